@@ -1,0 +1,26 @@
+//! A half line.
+
+use glam::Vec3;
+
+/// A half line from `origin` along the unit vector `direction`, up to the distance `t_max`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where the ray starts, in metres from the scene's origin.
+    pub origin: Vec3,
+    /// Unit direction of travel.
+    pub direction: Vec3,
+    /// Only hits nearer than this count, in metres.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// A ray without end.
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self { origin, direction, t_max: f32::INFINITY }
+    }
+
+    /// The point at distance `t`.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
