@@ -36,3 +36,5 @@
 pub mod geometry;
 pub mod sampling;
 pub mod spectrum;
+
+pub mod sequence;

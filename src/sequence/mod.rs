@@ -1,0 +1,36 @@
+//! Which files are frames, and in which order.
+//!
+//! A sequence is named by a pattern (`frame_####.ply`, `frame_%04d.ply`, `frame_$F4.ply`), a glob
+//! (`frame_*.ply`) or a folder. [`discover`] finds its files in ascending order of their [`FrameNumber`]s.
+//! Padding never matters for the order, gaps are allowed, and whatever is ambiguous (two files of one number,
+//! two kinds of names in one folder) is an error that names both files rather than a guess.
+//!
+//! [`FrameSelection`] is the part of the sequence that the command line asks for; [`output_path`] names the
+//! pictures.
+
+mod error;
+mod frames;
+mod gaps;
+mod glob;
+mod number;
+mod output;
+mod pattern;
+mod selection;
+
+use std::path::PathBuf;
+
+pub use error::SequenceError;
+pub use frames::discover;
+pub use gaps::{Gap, gaps};
+pub use number::FrameNumber;
+pub use output::{check_output_pattern, frame_path, has_place, output_path};
+pub use selection::{FrameSelection, format_numbers};
+
+/// One frame of a sequence on disk.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FrameFile {
+    /// The number in the file's name.
+    pub number: FrameNumber,
+    /// Where the file is.
+    pub path: PathBuf,
+}
