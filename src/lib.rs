@@ -38,3 +38,5 @@ pub mod sampling;
 pub mod spectrum;
 
 pub mod sequence;
+
+pub mod mesh;

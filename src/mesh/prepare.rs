@@ -1,0 +1,218 @@
+//! Makes a mesh fit for rays: areas, shared vertices and labels.
+
+use std::fmt;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::error::{Fault, MeshError, Place};
+use super::topology::topology;
+use super::{Interface, RawMesh, Region, weld};
+
+/// What was changed about a mesh, or is doubtful about it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshWarning {
+    /// There are no triangles (left).
+    Empty,
+    /// Triangles that repeat a vertex or have no area were dropped.
+    Degenerate {
+        /// How many.
+        dropped: usize,
+    },
+    /// Triangles with the same region on both sides were dropped.
+    SameRegion {
+        /// How many.
+        dropped: usize,
+        /// The region of the first.
+        region: Region,
+    },
+    /// Vertices of the same position were joined.
+    Welded {
+        /// How many vertices there were.
+        before: usize,
+        /// How many there are.
+        after: usize,
+    },
+    /// Edges that have a triangle on one side only: the surface has holes or a rim.
+    Open {
+        /// How many.
+        edges: usize,
+        /// The ends of the first.
+        first: [DVec3; 2],
+        /// Whether the file gave the labels; if not, they are a guess.
+        labelled: bool,
+    },
+    /// A closed mesh without labels whose normals pointed inwards.
+    InsideOut,
+    /// Edges around which the labels (or, without labels, the windings) contradict each other.
+    Inconsistent {
+        /// How many.
+        edges: usize,
+        /// The ends of the first.
+        first: [DVec3; 2],
+    },
+}
+
+impl fmt::Display for MeshWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Empty => write!(f, "the mesh has no triangles"),
+            Self::Degenerate { dropped } => write!(f, "{dropped} triangles without area were dropped"),
+            Self::SameRegion { dropped, region } => write!(
+                f,
+                "{dropped} triangles with the same label on both sides (the first: {}) were dropped",
+                region.0
+            ),
+            Self::Welded { before, after } => {
+                write!(f, "vertices of the same position were joined: {after} are left of {before}")
+            }
+            Self::Open { edges, first: [a, b], labelled } => {
+                write!(f, "the surface is open: {edges} edges have one triangle, the first from {a} to {b}")?;
+                if !labelled {
+                    write!(
+                        f,
+                        "; without labels in the file, its inside is taken to be where no normal points"
+                    )?;
+                }
+                Ok(())
+            }
+            Self::InsideOut => {
+                write!(f, "the normals of the closed surface point inwards; its sides were swapped")
+            }
+            Self::Inconsistent { edges, first: [a, b] } => {
+                write!(
+                    f,
+                    "what lies on either side contradicts itself around {edges} edges, the first from {a} to {b}"
+                )
+            }
+        }
+    }
+}
+
+/// Makes a mesh fit for rays and gives it labels; `inside` is the region within meshes that have none.
+///
+/// Afterwards every triangle has an area and two different regions, in `interfaces`. `path` is named in errors.
+///
+/// # Errors
+/// [`MeshError::Invalid`] when the parts of the mesh do not fit together; the readers return no such mesh.
+pub fn prepare(
+    mut mesh: RawMesh,
+    inside: Region,
+    path: &Path,
+) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
+    mesh.check().map_err(|fault| fault.in_file(path))?;
+    let labelled = mesh.interfaces.is_some();
+    let mut warnings = Vec::new();
+    let repeats = mesh.retain(|_, [a, b, c]| a != b && b != c && c != a);
+    let mut report = topology(&mesh);
+    let mut dropped = repeats;
+    if !report.is_closed() {
+        let before = mesh.positions.len();
+        weld(&mut mesh);
+        let after = mesh.positions.len();
+        if after < before {
+            warnings.push(MeshWarning::Welded { before, after });
+            dropped += mesh.retain(|_, [a, b, c]| a != b && b != c && c != a);
+            report = topology(&mesh);
+        }
+    }
+    if let Some(first) = report.first_open_edge {
+        warnings.push(MeshWarning::Open { edges: report.open_edges, first, labelled });
+    }
+    if let Some(first) = report.first_inconsistent_edge {
+        warnings.push(MeshWarning::Inconsistent { edges: report.inconsistent_edges, first });
+    }
+    if !labelled {
+        let inside_out = report.is_closed() && signed_volume(&mesh) < 0.0;
+        warnings.extend(inside_out.then_some(MeshWarning::InsideOut));
+        mesh.interfaces = Some(vec![interface_of(inside, inside_out); mesh.triangles.len()]);
+    }
+    // Only now: what has no area still joins its neighbours.
+    dropped += mesh.retain(|mesh, triangle| !mesh.has_no_area(triangle));
+    warnings.extend((dropped > 0).then_some(MeshWarning::Degenerate { dropped }));
+    warnings.extend(drop_same_region(&mut mesh));
+    warnings.extend(mesh.triangles.is_empty().then_some(MeshWarning::Empty));
+    Ok((mesh, warnings))
+}
+
+fn interface_of(inside: Region, inside_out: bool) -> Interface {
+    let (front, back) = if inside_out { (inside, Region::OUTSIDE) } else { (Region::OUTSIDE, inside) };
+    Interface { front, back }
+}
+
+fn drop_same_region(mesh: &mut RawMesh) -> Option<MeshWarning> {
+    let interfaces = mesh.interfaces.as_deref()?;
+    let region = interfaces.iter().find(|interface| interface.front == interface.back)?.front;
+    let kept: Vec<bool> = interfaces.iter().map(|interface| interface.front != interface.back).collect();
+    let dropped = kept.iter().filter(|&&keep| !keep).count();
+    mesh.retain_triangles(&kept);
+    Some(MeshWarning::SameRegion { dropped, region })
+}
+
+/// Six times the volume that a closed mesh encloses, positive when its normals point outwards.
+fn signed_volume(mesh: &RawMesh) -> f64 {
+    // Relative to a point of the mesh, so that a far origin costs no digits.
+    let origin = mesh.positions.first().copied().unwrap_or_default();
+    let corner = |index: u32| mesh.positions[index as usize] - origin;
+    mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum()
+}
+
+impl RawMesh {
+    /// Whether a triangle has exactly no area in double precision.
+    pub(super) fn has_no_area(&self, triangle: [u32; 3]) -> bool {
+        let [a, b, c] = triangle.map(|index| self.positions[index as usize]);
+        (b - a).cross(c - a) == DVec3::ZERO
+    }
+
+    /// Keeps the triangles that are marked, with their labels and normals.
+    pub(super) fn retain_triangles(&mut self, kept: &[bool]) {
+        fn retain<T>(items: &mut Vec<T>, kept: &[bool]) {
+            let mut marks = kept.iter();
+            items.retain(|_| marks.next().copied().unwrap_or(true));
+        }
+        retain(&mut self.triangles, kept);
+        if let Some(interfaces) = &mut self.interfaces {
+            retain(interfaces, kept);
+        }
+        if let Some(corners) = self.normals.as_mut().and_then(|normals| normals.corners.as_mut()) {
+            retain(corners, kept);
+        }
+    }
+
+    /// Keeps the triangles that pass; tells how many did not.
+    fn retain(&mut self, passes: impl Fn(&Self, [u32; 3]) -> bool) -> usize {
+        let failing = self.triangles.iter().filter(|&&triangle| !passes(self, triangle)).count();
+        if failing > 0 {
+            let kept: Vec<bool> = self.triangles.iter().map(|&triangle| passes(self, triangle)).collect();
+            self.retain_triangles(&kept);
+        }
+        failing
+    }
+
+    /// What the readers promise: finite positions, indices in range, one entry a triangle.
+    fn check(&self) -> Result<(), Fault> {
+        let in_range = |triangles: &[[u32; 3]], count: usize| {
+            triangles.iter().flatten().all(|&index| (index as usize) < count)
+        };
+        let triangles = self.triangles.len();
+        let normals_fit = self.normals.as_ref().is_none_or(|normals| match &normals.corners {
+            Some(corners) => corners.len() == triangles && in_range(corners, normals.values.len()),
+            None => normals.values.len() == self.positions.len(),
+        });
+        let problem = if !self.positions.iter().all(|position| position.is_finite()) {
+            "a vertex is not finite"
+        } else if !in_range(&self.triangles, self.positions.len()) {
+            "a triangle uses a vertex that does not exist"
+        } else if self.interfaces.as_ref().is_some_and(|interfaces| interfaces.len() != triangles) {
+            "there is not one pair of labels for each triangle"
+        } else if !normals_fit {
+            "the normals do not fit the vertices or triangles"
+        } else {
+            return Ok(());
+        };
+        Err(Fault::invalid(Place::File, problem, "correct what made the mesh"))
+    }
+}
+
+#[cfg(test)]
+mod tests;

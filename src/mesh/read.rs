@@ -1,0 +1,179 @@
+//! Reads a mesh file of any known format.
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+
+use super::error::{Fault, MeshError, Place};
+use super::limits::decompressed_limit;
+use super::{RawMesh, dsc, obj, ply};
+
+/// How a mesh is written down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Syntax {
+    /// Polygon file format.
+    Ply,
+    /// Wavefront OBJ.
+    Obj,
+    /// Tetrahedra of a deformable simplicial complex.
+    Dsc,
+}
+
+/// A file format: a syntax, compressed or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// How the mesh is written down.
+    pub syntax: Syntax,
+    /// Whether the file is compressed with gzip.
+    pub gzip: bool,
+}
+
+/// Every format that can be read.
+pub const FORMATS: [Format; 6] = [
+    Format { syntax: Syntax::Ply, gzip: false },
+    Format { syntax: Syntax::Obj, gzip: false },
+    Format { syntax: Syntax::Dsc, gzip: false },
+    Format { syntax: Syntax::Ply, gzip: true },
+    Format { syntax: Syntax::Obj, gzip: true },
+    Format { syntax: Syntax::Dsc, gzip: true },
+];
+
+impl Format {
+    /// What file names of this format end with, in lower case.
+    pub fn extension(self) -> &'static str {
+        match (self.syntax, self.gzip) {
+            (Syntax::Ply, false) => ".ply",
+            (Syntax::Obj, false) => ".obj",
+            (Syntax::Dsc, false) => ".dsc",
+            (Syntax::Ply, true) => ".ply.gz",
+            (Syntax::Obj, true) => ".obj.gz",
+            (Syntax::Dsc, true) => ".dsc.gz",
+        }
+    }
+
+    /// The format that a file's name promises, whatever the case of its letters.
+    pub fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
+        FORMATS.into_iter().find(|format| name.ends_with(format.extension()))
+    }
+}
+
+/// Reads a mesh from a file; its name tells the format.
+///
+/// # Errors
+/// [`MeshError`] when the file cannot be read, its name promises no known format, or its contents are wrong.
+pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
+    let format = Format::of(path).ok_or_else(|| {
+        Fault::unsupported(
+            Place::File,
+            "the file name promises no known mesh format",
+            "the known ones end with .ply, .obj or .dsc, each also with .gz behind it",
+        )
+        .in_file(path)
+    })?;
+    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
+    read_bytes(&bytes, format, path)
+}
+
+/// Reads a mesh from the contents of a file; `path` is only named in messages.
+///
+/// # Errors
+/// [`MeshError`] when the contents are wrong.
+pub fn read_bytes(bytes: &[u8], format: Format, path: &Path) -> Result<RawMesh, MeshError> {
+    let mesh = if format.gzip {
+        decompress(bytes).and_then(|inside| read_syntax(&inside, format.syntax))
+    } else {
+        read_syntax(bytes, format.syntax)
+    };
+    mesh.map_err(|fault| fault.in_file(path))
+}
+
+fn read_syntax(bytes: &[u8], syntax: Syntax) -> Result<RawMesh, Fault> {
+    match syntax {
+        Syntax::Ply => ply::read(bytes),
+        Syntax::Obj => obj::read(bytes),
+        Syntax::Dsc => dsc::read(bytes),
+    }
+}
+
+/// The contents of a gzip file of one or more members, their checksums verified.
+fn decompress(bytes: &[u8]) -> Result<Vec<u8>, Fault> {
+    let limit = decompressed_limit(bytes.len());
+    let mut inside = Vec::new();
+    let result = MultiGzDecoder::new(bytes).take(limit + 1).read_to_end(&mut inside);
+    if inside.len() as u64 > limit {
+        return Err(Fault::too_large(
+            Place::File,
+            format!("{} compressed bytes hold more than {limit}", bytes.len()),
+            "no mesh shrinks that much; decompress the file by hand if it really is one",
+        ));
+    }
+    match result {
+        Ok(_) => Ok(inside),
+        Err(error) => {
+            let after = inside.len();
+            let problem = if error.kind() == io::ErrorKind::UnexpectedEof {
+                format!("the gzip data ends early, after {after} decompressed bytes")
+            } else {
+                format!("the gzip data is damaged after {after} decompressed bytes ({error})")
+            };
+            let cure = "the file is truncated, damaged or not gzip; write it again";
+            Err(Fault::malformed(Place::File, problem, cure))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+
+    use super::*;
+    use crate::mesh::error::Blame;
+
+    fn gzip(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn names_promise_formats_in_any_case() {
+        for format in FORMATS {
+            let lower = format!("dir.gz/a{}", format.extension());
+            assert_eq!(Format::of(Path::new(&lower)), Some(format));
+            assert_eq!(Format::of(Path::new(&lower.to_uppercase())), Some(format));
+        }
+        for other in ["a.gz", "a.bobj.gz", "a.stl", "ply", "a.ply.bak", ""] {
+            assert_eq!(Format::of(Path::new(other)), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn a_missing_file_is_an_io_error() {
+        assert!(read(Path::new("tests/data/meshes/no_such_file.ply")).unwrap_err().is_not_found());
+    }
+
+    #[test]
+    fn members_are_joined() {
+        let joined = [gzip(b"one "), gzip(b"two")].concat();
+        assert_eq!(decompress(&joined).unwrap(), b"one two");
+    }
+
+    #[test]
+    fn damage_truncation_and_bombs_are_told_apart() {
+        let mut file = gzip(b"some text that is long enough");
+        let truncated = decompress(&file[..file.len() - 9]).unwrap_err();
+        assert!(truncated.problem.contains("ends early"), "{}", truncated.problem);
+        let checksum = file.len() - 8;
+        file[checksum] ^= 1;
+        assert!(decompress(&file).unwrap_err().problem.contains("damaged"));
+        assert_eq!(decompress(b"not gzip").unwrap_err().blame, Blame::Malformed);
+        let bomb = gzip(&vec![b'0'; 96 << 20]);
+        assert_eq!(decompress(&bomb).unwrap_err().blame, Blame::TooLarge);
+    }
+}
