@@ -40,3 +40,5 @@ pub mod spectrum;
 pub mod sequence;
 
 pub mod mesh;
+
+pub mod accel;
