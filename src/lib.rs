@@ -42,3 +42,5 @@ pub mod sequence;
 pub mod mesh;
 
 pub mod accel;
+
+pub mod optics;

@@ -1,0 +1,107 @@
+//! What fills a region: how it bends, absorbs and scatters light.
+
+use glam::Vec4;
+
+use super::phase::PhaseFunction;
+use crate::geometry::elementary::{exp4, ln};
+use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
+
+/// Index of a medium in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MediumId(pub u16);
+
+/// A homogeneous medium.
+#[derive(Clone, Debug)]
+pub struct Medium {
+    /// Its name in the scene file.
+    pub name: String,
+    /// Refractive index at the reference wavelength.
+    pub n: f32,
+    /// Absorption coefficient in 1/m.
+    pub sigma_a: LaneCurve,
+    /// Scattering coefficient in 1/m.
+    pub sigma_s: LaneCurve,
+    /// Where scattered light goes.
+    pub phase: PhaseFunction,
+}
+
+/// A medium's coefficients at the wavelengths of one path.
+#[derive(Clone, Copy, Debug)]
+pub struct MediumLanes {
+    /// Scattering in 1/m.
+    pub sigma_s: Lanes,
+    /// Extinction (absorption and scattering) in 1/m.
+    pub sigma_t: Lanes,
+    /// True when any lane scatters.
+    pub scatters: bool,
+    /// True when no lane loses anything.
+    pub clear: bool,
+}
+
+/// How far light goes before it meets a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeFlight {
+    /// Distance in metres; infinite where nothing is in the way.
+    pub distance: f32,
+    /// Selection probabilities of the lanes.
+    probabilities: Lanes,
+}
+
+impl Medium {
+    /// The coefficients at the wavelengths of a path.
+    pub fn lanes(&self, wavelengths: &Wavelengths) -> MediumLanes {
+        let sigma_s = self.sigma_s.lanes(wavelengths);
+        let sigma_t = self.sigma_a.lanes(wavelengths) + sigma_s;
+        MediumLanes { sigma_s, sigma_t, scatters: sigma_s != Lanes::ZERO, clear: sigma_t == Lanes::ZERO }
+    }
+}
+
+impl MediumLanes {
+    /// exp(-sigma_t d), Bouguer's law.
+    #[inline]
+    pub fn transmittance(&self, distance: f32) -> Lanes {
+        if self.clear {
+            return Lanes::ONE;
+        }
+        // 0 times infinity is a clear lane: nothing is lost there however far the light goes.
+        let depth = self.sigma_t * distance;
+        exp4(-Vec4::select(self.sigma_t.cmpeq(Vec4::ZERO), Vec4::ZERO, depth))
+    }
+
+    /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`.
+    #[inline]
+    pub fn free_flight(&self, throughput: Lanes, u: f32) -> FreeFlight {
+        let probabilities = throughput / throughput.element_sum();
+        let mut lane = 0;
+        let mut rest = u;
+        while lane < 3 && rest >= probabilities[lane] {
+            rest -= probabilities[lane];
+            lane += 1;
+        }
+        // Rounding may run past the last lane that has any probability.
+        while lane > 0 && probabilities[lane] == 0.0 {
+            lane -= 1;
+        }
+        let u = (rest / probabilities[lane]).min(1.0 - f32::EPSILON * 0.5);
+        let sigma_t = self.sigma_t[lane];
+        let distance = if sigma_t > 0.0 { -ln(1.0 - u) / sigma_t } else { f32::INFINITY };
+        FreeFlight { distance, probabilities }
+    }
+
+    /// Weight of a path that scatters at the sampled distance: sigma_s T over the density summed over all lanes.
+    #[inline]
+    pub fn scatter_weight(&self, flight: &FreeFlight) -> Lanes {
+        let transmittance = self.transmittance(flight.distance);
+        let pdf_d = (flight.probabilities * self.sigma_t * transmittance).element_sum();
+        if pdf_d > 0.0 { self.sigma_s * transmittance / pdf_d } else { Lanes::ZERO }
+    }
+
+    /// Weight of a path that reaches a surface at `distance`, nearer than the sampled one: T over the probability of
+    /// getting that far, summed over all lanes.
+    #[inline]
+    pub fn pass_weight(&self, flight: &FreeFlight, distance: f32) -> Lanes {
+        let transmittance = self.transmittance(distance);
+        let probability = (flight.probabilities * transmittance).element_sum();
+        if probability > 0.0 { transmittance / probability } else { Lanes::ZERO }
+    }
+}

@@ -1,0 +1,17 @@
+//! What light meets: refractive indices, surfaces between media, and what is in the media.
+//!
+//! Water and ice come with measured tables ([`water`], [`ice`]); an index from them or from a scene file is a
+//! [`RefractiveIndex`]. Smooth boundaries reflect after Fresnel ([`fresnel`]) and bend after Snell ([`refraction`]).
+//!
+//! Indices are n + i k with k >= 0 absorbing. `eta_t_over_i` is the index on the far side over the index on the side
+//! that the light, or the path, comes from. Coefficients are in 1/m, wavelengths in nm in vacuum.
+
+pub mod fresnel;
+pub mod ice;
+pub mod medium;
+pub mod phase;
+pub mod refraction;
+pub mod refractive_index;
+pub mod water;
+
+pub use refractive_index::RefractiveIndex;
