@@ -44,3 +44,5 @@ pub mod mesh;
 pub mod accel;
 
 pub mod optics;
+
+pub mod light;

@@ -1,0 +1,135 @@
+//! Light from infinity: constant, or a latitude-longitude picture.
+//!
+//! The picture's top row is straight up, its columns run once around the horizon: with z up, the left edge is the
+//! direction -x, a quarter of the width is -y, the middle is +x and three quarters is +y. Radiance is interpolated
+//! between the texels' centres; directions are drawn in proportion to the interpolated picture's integral over each texel
+//! times the sine of the polar angle.
+
+use std::f32::consts::{FRAC_1_PI, PI};
+
+use glam::Vec3;
+
+use super::{LightSample, Picture};
+use crate::geometry::elementary::{acos, atan2, sin_cos};
+use crate::sampling::Distribution2d;
+use crate::spectrum::light_primaries::radiance_lanes;
+use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths};
+
+/// Light from infinity in all directions.
+#[derive(Clone, Debug)]
+pub enum Environment {
+    /// The same from everywhere.
+    Constant(LaneCurve),
+    /// A picture of the whole sphere.
+    Image(Box<ImageEnvironment>),
+}
+
+/// A picture of the sphere with its sampling tables.
+#[derive(Clone, Debug)]
+pub struct ImageEnvironment {
+    picture: Picture,
+    /// The axes that play x, y, z of the module's description.
+    axes: [Vec3; 3],
+    mode: LaneMode,
+    distribution: Option<Distribution2d>,
+}
+
+impl Environment {
+    /// A picture whose top is towards the unit vector `up` (a coordinate axis).
+    pub fn image(picture: Picture, up: Vec3, mode: LaneMode) -> Self {
+        // A cyclic permutation keeps the picture from being mirrored; z up leaves the axes alone.
+        let x = Vec3::new(up.z.abs(), up.x.abs(), up.y.abs());
+        let axes = [x, up.cross(x), up];
+        let distribution = distribution_of(&picture);
+        Self::Image(Box::new(ImageEnvironment { picture, axes, mode, distribution }))
+    }
+
+    /// True when next-event estimation looks for it.
+    pub fn is_sampled(&self) -> bool {
+        matches!(self, Self::Image(image) if image.distribution.is_some())
+    }
+
+    /// Radiance that arrives from `direction`.
+    pub fn radiance(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
+        match self {
+            Self::Constant(curve) => curve.lanes(wavelengths),
+            Self::Image(image) => image.radiance(direction, wavelengths),
+        }
+    }
+
+    /// A direction drawn in proportion to the picture; `None` for a constant or black sky.
+    pub fn sample(&self, u: [f32; 2], wavelengths: &Wavelengths) -> Option<LightSample> {
+        let Self::Image(image) = self else { return None };
+        let (point, density) = image.distribution.as_ref()?.sample(u);
+        let (sin, cos) = sin_cos(point[1] * PI);
+        let (sin_phi, cos_phi) = sin_cos((2.0 * point[0] - 1.0) * PI);
+        let [x, y, z] = image.axes;
+        let wi = (x * (sin * cos_phi) + y * (sin * sin_phi) + z * cos).normalize();
+        let pdf_w = solid_angle_density(density, sin)?;
+        let radiance = self.radiance(wi, wavelengths);
+        Some(LightSample { wi, distance: f32::INFINITY, triangle: None, radiance, pdf_w })
+    }
+
+    /// Density per solid angle of [`Environment::sample`]; 0 where it is not sampled.
+    pub fn pdf_w(&self, direction: Vec3) -> f32 {
+        let Self::Image(image) = self else { return 0.0 };
+        let Some(distribution) = &image.distribution else {
+            return 0.0;
+        };
+        let point = image.square(direction);
+        let cos = direction.dot(image.axes[2]);
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        solid_angle_density(distribution.pdf(point), sin).unwrap_or(0.0)
+    }
+}
+
+/// The map from the unit square spreads it over 2 pi^2 sin(theta) steradians per unit of area.
+fn solid_angle_density(density: f32, sin: f32) -> Option<f32> {
+    (sin > 0.0 && density > 0.0).then(|| density / (2.0 * PI * PI * sin))
+}
+
+impl ImageEnvironment {
+    /// Where a direction lies on the picture, both in [0, 1).
+    fn square(&self, direction: Vec3) -> [f32; 2] {
+        let [x, y, z] = self.axes.map(|axis| direction.dot(axis));
+        let below_one = 1.0 - f32::EPSILON * 0.5;
+        [(0.5 + 0.5 * FRAC_1_PI * atan2(y, x)).clamp(0.0, below_one), (acos(z) * FRAC_1_PI).min(below_one)]
+    }
+
+    fn radiance(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
+        let [x, y] = self.square(direction);
+        let (width, height) = (self.picture.width, self.picture.height);
+        let (x, y) = (x * width as f32 - 0.5, y * height as f32 - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let column = |offset: i64| (left as i64 + offset).rem_euclid(width as i64) as usize;
+        let row = |offset: i64| (top as i64 + offset).clamp(0, height as i64 - 1) as usize;
+        let texel = |i, j| self.picture.texels[row(j) * width + column(i)];
+        let (fx, fy) = (x - left, y - top);
+        let upper = texel(0, 0).lerp(texel(1, 0), fx);
+        let lower = texel(0, 1).lerp(texel(1, 1), fx);
+        radiance_lanes(self.mode, upper.lerp(lower, fy), wavelengths)
+    }
+}
+
+/// Weights of the texels: the integral of the interpolated picture over each, times the sine of the polar angle.
+fn distribution_of(picture: &Picture) -> Option<Distribution2d> {
+    // A tent over three texels integrates to 1/8, 6/8 and 1/8 of them over the middle one.
+    const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
+    let (width, height) = (picture.width, picture.height);
+    let brightness: Vec<f64> = picture.texels.iter().map(|t| f64::from(t.element_sum()) / 3.0).collect();
+    let mut weights = Vec::with_capacity(width * height);
+    for j in 0..height {
+        let sine = libm::sin(std::f64::consts::PI * (j as f64 + 0.5) / height as f64);
+        for i in 0..width {
+            let mut sum = 0.0;
+            for (dj, share_j) in SHARES.iter().enumerate() {
+                let row = (j + dj).saturating_sub(1).min(height - 1);
+                for (di, share_i) in SHARES.iter().enumerate() {
+                    sum += share_j * share_i * brightness[row * width + (i + di + width - 1) % width];
+                }
+            }
+            weights.push(sum * sine);
+        }
+    }
+    Distribution2d::new(width, &weights)
+}

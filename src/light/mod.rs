@@ -1,0 +1,63 @@
+//! Where light comes from: the sky, the sun's disc, emitting triangles.
+//!
+//! Each light is found by chance (a path that runs into it) and, where that pays, by next-event estimation; the
+//! balance heuristic weights the two `[VEACH97 section 9.2.2]`.
+//!
+//! * A constant sky is found by chance only: directions drawn from the surface or phase function are already right.
+//! * A picture of the sky is importance sampled.
+//! * The sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
+//!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out.
+//! * Emitting triangles are sampled by area.
+
+pub mod area;
+pub mod environment;
+mod picture;
+pub mod sun;
+
+pub use area::AreaLights;
+pub use environment::Environment;
+pub use picture::{ImageError, Picture};
+pub use sun::Sun;
+
+use glam::Vec3;
+
+use crate::spectrum::Lanes;
+
+/// Every light of a scene.
+#[derive(Clone, Debug)]
+pub struct Lights {
+    /// Light from infinity in all directions.
+    pub environment: Environment,
+    /// The sun's disc.
+    pub sun: Option<Sun>,
+    /// Emitting triangles.
+    pub area: Option<AreaLights>,
+}
+
+/// A direction towards a light, drawn by next-event estimation.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction towards the light.
+    pub wi: Vec3,
+    /// How far it is; infinite for the sky and the sun.
+    pub distance: f32,
+    /// The emitting triangle, if any.
+    pub triangle: Option<u32>,
+    /// Radiance that arrives if nothing is in between.
+    pub radiance: Lanes,
+    /// Density per solid angle.
+    pub pdf_w: f32,
+}
+
+impl Lights {
+    /// True when next-event estimation can find anything.
+    pub fn are_sampled(&self) -> bool {
+        self.environment.is_sampled() || self.sun.is_some() || self.area.is_some()
+    }
+}
+
+/// The balance heuristic's weight of a sample with density `pdf` where another strategy has `other`.
+#[inline]
+pub fn balance(pdf: f32, other: f32) -> f32 {
+    if pdf > 0.0 { 1.0 / (1.0 + other / pdf) } else { 0.0 }
+}

@@ -1,0 +1,102 @@
+//! Reads pictures of the sky: OpenEXR and Radiance HDR.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+/// Linear Rec. 709 RGB, row 0 on top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Texels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Row by row.
+    pub texels: Vec<Vec3>,
+}
+
+/// Why a picture cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ImageError {
+    /// The file is not there or cannot be read.
+    #[error("{path}: {source}; check sky.image, which is relative to the scene file")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file is not a picture that can be read.
+    #[error("{path}: {reason}; give an OpenEXR (.exr) or Radiance (.hdr) picture")]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What the reader says.
+        reason: String,
+    },
+    /// A texel is not a radiance.
+    #[error(
+        "{path}: texel ({x}, {y}) is {value}: radiance must be finite and not negative; repair the picture"
+    )]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+        /// What is there.
+        value: Vec3,
+    },
+}
+
+impl Picture {
+    /// Reads `.exr` or `.hdr`.
+    ///
+    /// # Errors
+    /// When the file is missing, malformed, or has a texel that is negative or not finite.
+    pub fn read(path: &Path) -> Result<Self, ImageError> {
+        let bytes = std::fs::read(path).map_err(|source| ImageError::Io { path: path.into(), source })?;
+        let is_exr = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]);
+        let picture = if is_exr { read_exr(&bytes) } else { read_hdr(&bytes) }
+            .map_err(|reason| ImageError::Malformed { path: path.into(), reason })?;
+        let wrong = picture.texels.iter().position(|t| !(t.is_finite() && t.min_element() >= 0.0));
+        match wrong {
+            Some(at) => Err(ImageError::Invalid {
+                path: path.into(),
+                x: at % picture.width,
+                y: at / picture.width,
+                value: picture.texels[at],
+            }),
+            None => Ok(picture),
+        }
+    }
+}
+
+fn read_exr(bytes: &[u8]) -> Result<Picture, String> {
+    use exr::prelude::*;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgba_channels(
+            |size, _| (size.width(), vec![Vec3::ZERO; size.width() * size.height()]),
+            |(width, texels), position, (r, g, b, _): (f32, f32, f32, f32)| {
+                texels[position.y() * *width + position.x()] = Vec3::new(r, g, b);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(std::io::Cursor::new(bytes))
+        .map_err(|e| e.to_string())?;
+    let (width, texels) = image.layer_data.channel_data.pixels;
+    Ok(Picture { width, height: texels.len() / width.max(1), texels })
+}
+
+fn read_hdr(bytes: &[u8]) -> Result<Picture, String> {
+    let decoder = image::codecs::hdr::HdrDecoder::new(bytes).map_err(|e| e.to_string())?;
+    let rgb = image::DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?.into_rgb32f();
+    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
+    let texels = rgb.pixels().map(|p| Vec3::from_array(p.0)).collect();
+    Ok(Picture { width, height, texels })
+}
