@@ -46,3 +46,5 @@ pub mod accel;
 pub mod optics;
 
 pub mod light;
+
+pub mod scene;

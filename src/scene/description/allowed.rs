@@ -1,0 +1,79 @@
+//! Which numbers a key takes.
+
+/// A range of numbers with the words that ask for one of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed {
+    least: f64,
+    greatest: f64,
+    /// Whether the ends themselves are refused.
+    open: bool,
+    /// What to write instead, such as "a number above 0".
+    pub words: &'static str,
+}
+
+impl Allowed {
+    /// Above 0.
+    pub const POSITIVE: Self = Self::open(0.0, f64::INFINITY, "a number above 0");
+    /// 0 or above.
+    pub const NOT_NEGATIVE: Self = Self::closed(0.0, f64::MAX, "a number that is not below 0");
+    /// A reflectance.
+    pub const UNIT: Self = Self::closed(0.0, 1.0, "a number from 0 to 1");
+    /// A mean cosine.
+    pub const MEAN_COSINE: Self = Self::open(-1.0, 1.0, "a number between -1 and 1, both excluded");
+    /// An angle in degrees below a half turn.
+    pub const HALF_TURN: Self = Self::open(0.0, 180.0, "an angle between 0 and 180 degrees, both excluded");
+    /// A coordinate. Beyond this even re-centred positions lose the scene.
+    pub const COORDINATE: Self = Self::closed(-1e12, 1e12, "a number from -1e12 to 1e12");
+    /// Metres per unit.
+    pub const SCALE: Self = Self::closed(1e-12, 1e12, "a number from 1e-12 to 1e12");
+    /// A wavelength in nanometres.
+    pub const WAVELENGTH: Self = Self::closed(1.0, 1e6, "a wavelength from 1 to 1e6 nanometres");
+    /// Temperature of a body that glows, in kelvin.
+    pub const KELVIN: Self = Self::closed(1.0, 1e6, "a temperature from 1 to 1e6 kelvin");
+    /// Temperature of a light whose luminance is given: below this it is too dark to be scaled.
+    pub const KELVIN_OF_LIGHT: Self = Self::closed(500.0, 1e6, "a temperature from 500 to 1e6 kelvin");
+    /// Temperature of liquid water in degrees Celsius.
+    pub const CELSIUS_OF_WATER: Self =
+        Self::closed(-10.0, 100.0, "a temperature from -10 to 100 degrees Celsius");
+    /// Salinity in parts per thousand.
+    pub const SALINITY: Self = Self::closed(0.0, 100.0, "a salinity from 0 to 100 parts per thousand");
+    /// Exposure in stops.
+    pub const STOPS: Self = Self::closed(-100.0, 100.0, "a number of stops from -100 to 100");
+
+    const fn closed(least: f64, greatest: f64, words: &'static str) -> Self {
+        Self { least, greatest, open: false, words }
+    }
+
+    const fn open(least: f64, greatest: f64, words: &'static str) -> Self {
+        Self { least, greatest, open: true, words }
+    }
+
+    /// Whether a number may be used; never one that is not finite.
+    pub fn contains(&self, number: f64) -> bool {
+        let inside = if self.open {
+            self.least < number && number < self.greatest
+        } else {
+            self.least <= number && number <= self.greatest
+        };
+        inside && number.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_and_what_is_not_finite() {
+        assert!(
+            Allowed::UNIT.contains(0.0) && Allowed::UNIT.contains(1.0) && !Allowed::UNIT.contains(1.0 + 1e-9)
+        );
+        assert!(!Allowed::MEAN_COSINE.contains(1.0) && !Allowed::POSITIVE.contains(0.0));
+        for allowed in [Allowed::COORDINATE, Allowed::POSITIVE, Allowed::NOT_NEGATIVE] {
+            assert!(allowed.contains(5.0));
+            for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                assert!(!allowed.contains(number));
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Scene files that use every key, for tests to walk.
+
+/// A scene file with its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    /// What messages call it.
+    pub name: &'static str,
+    /// The file's text.
+    pub text: &'static str,
+}
+
+/// Scene files that are right. Together they use every key and every form of value.
+pub const EXAMPLES: [Example; 6] = [
+    Example { name: "empty", text: "" },
+    Example { name: "sea and ice", text: SEA_AND_ICE },
+    Example { name: "spectral", text: SPECTRAL },
+    Example { name: "surfaces", text: SURFACES },
+    Example { name: "automatic camera", text: AUTOMATIC_CAMERA },
+    Example { name: "plain numbers", text: PLAIN_NUMBERS },
+];
+
+const SEA_AND_ICE: &str = r#"
+[frames]
+path = "frames/frame_####.ply"
+fps = 24
+scale = 1.0
+up = "z"
+normals = "smooth"
+inside = 1
+
+[regions]
+0 = "air"
+1 = "sea"
+2 = "ice"
+
+[domain]
+box = [[-1, -1, -0.8], [1, 1, 0.8]]
+walls = { sides = "extend", bottom = "open" }
+
+[media.air]
+ior = 1.0
+
+[media.sea]
+ior = 1.33
+absorption = [0.35, 0.07, 0.03]
+scattering = [0.10, 0.11, 0.12]
+phase = { kind = "henyey-greenstein", g = 0.9 }
+
+[media.ice]
+ior = 1.31
+absorption = [0.25, 0.1, 0.06]
+scattering = 8.0
+phase = { kind = "henyey-greenstein", g = 0.86 }
+
+[sun]
+direction = [0.4, 0.2, 0.9]
+angular_diameter = 0.53
+irradiance = [1.0, 0.95, 0.85]
+
+[sky]
+radiance = [0.6, 0.7, 0.8]
+
+[camera]
+eye = [1.1, 2.3, 2.3]
+target = [0.0, 0.5, 0.0]
+up = [0, 0, 1]
+vertical_fov = 40
+resolution = [640, 360]
+
+[render]
+integrator = "auto"
+samples = 64
+max_depth = 0
+split = 1
+seed = 0
+filter = "box"
+
+[output]
+path = "out/frame_####.exr"
+png = true
+exposure = 0.5
+aovs = ["albedo", "N", "P", "Z", "variance"]
+"#;
+
+const SPECTRAL: &str = r#"
+[frames]
+path = "frames"
+up = "-y"
+normals = "file"
+inside = 4
+
+[regions]
+4 = "water"
+-7 = "glass"
+999 = "ice"
+
+[domain]
+box = [[0, 0, 0], [1, 1, 1]]
+walls = { sides = "opaque", bottom = "opaque", top = "open" }
+reflectance = { wavelength = [400, 700], value = [0.2, 0.4] }
+
+[media.water]
+ior = { table = "water", temperature = 10, salinity = 35 }
+absorption = { table = "water" }
+
+[media.ice]
+ior = { table = "ice" }
+absorption = { table = "ice" }
+phase = { kind = "isotropic" }
+
+[media.glass]
+ior = { wavelength = [400, 550, 700], n = [1.53, 1.52, 1.51], k = [0, 1e-8, 0] }
+absorption = { wavelength = [400.5], value = [0.1] }
+scattering = { wavelength = [400, 700], value = [1, 0] }
+
+[sun]
+direction = [0, -1, 0]
+irradiance = { blackbody = 5778, illuminance = 100000 }
+
+[sky]
+radiance = { blackbody = 1500 }
+
+[render]
+integrator = "path"
+filter = "blackman-harris"
+seed = 18446744073709551615
+"#;
+
+const SURFACES: &str = r#"
+[media.water]
+ior = 1.33
+
+[[surfaces]]
+mesh = "bottom_####.ply"
+normals = "flat"
+transform = { scale = 0.01, translate = [0, 0, -1.5] }
+material = { kind = "diffuse", reflectance = [0.5, 0.4, 0.3] }
+
+[[surfaces]]
+mesh = "tank.obj"
+front = "water"
+back = "air"
+material = { kind = "dielectric" }
+
+[[surfaces]]
+mesh = "mist.ply"
+front = "air"
+back = "water"
+material = { kind = "null" }
+
+[[surfaces]]
+mesh = "mirror.ply"
+material = { kind = "conductor", eta = [0.2, 0.9, 1.1], k = 3 }
+
+[[surfaces]]
+mesh = "lamp.ply"
+material = { kind = "emitter", radiance = { blackbody = 2700 } }
+
+[[surfaces]]
+mesh = "floor.ply"
+material = { kind = "diffuse" }
+
+[sky]
+radiance = { image = "sky.exr" }
+
+[camera]
+eye = [0, -4, 1]
+target = [0, 0, 0]
+horizontal_fov = 60.5
+
+[render]
+integrator = "ambient-occlusion"
+filter = "gaussian"
+"#;
+
+const AUTOMATIC_CAMERA: &str = r#"
+frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y" }
+camera = { resolution = [1920, 1080], vertical_fov = 30 }
+output.png = false
+"#;
+
+const PLAIN_NUMBERS: &str = r#"
+[media.fog]
+scattering = 1_000
+absorption = 0x10
+
+[sky]
+radiance = { wavelength = [380, 780], value = [1, +2.5e-1] }
+"#;

@@ -1,0 +1,52 @@
+//! Reads `[frames]`.
+
+use super::allowed::Allowed;
+use super::error::SceneError;
+use super::value::Value;
+use super::{Axis, FramesDescription, NormalsDescription};
+use crate::mesh::Region;
+
+/// Reads `[frames]`.
+pub(super) fn read(value: &Value<'_>) -> Result<FramesDescription, SceneError> {
+    let table = value.table("a table [frames]")?;
+    let path =
+        table.require("path", "write a pattern such as \"frames/frame_####.ply\", a glob or a folder")?;
+    let number = |key, default, allowed| table.get(key).map_or(Ok(default), |v| v.number(allowed));
+    let frames = FramesDescription {
+        path: path.text("a pattern such as \"frames/frame_####.ply\", a glob or a folder")?.to_owned(),
+        fps: number("fps", 24.0, &Allowed::POSITIVE)?,
+        scale: number("scale", 1.0, &Allowed::SCALE)?,
+        up: table.get("up").map_or(Ok(Axis::Z), |v| axis(&v))?,
+        normals: table.get("normals").map_or(Ok(NormalsDescription::default()), |v| normals(&v))?,
+        inside: table.get("inside").map_or(Ok(Region(1)), |v| inside(&v))?,
+    };
+    table.finish()?;
+    Ok(frames)
+}
+
+/// `normals = "smooth" | "flat" | "file"`
+pub(super) fn normals(value: &Value<'_>) -> Result<NormalsDescription, SceneError> {
+    use NormalsDescription::{File, Flat, Smooth};
+    value.choice(&[("smooth", Smooth), ("flat", Flat), ("file", File)])
+}
+
+/// `up = "z"`
+fn axis(value: &Value<'_>) -> Result<Axis, SceneError> {
+    let axis = |index, negative| Axis { index, negative };
+    value.choice(&[
+        ("x", axis(0, false)),
+        ("y", axis(1, false)),
+        ("z", axis(2, false)),
+        ("-x", axis(0, true)),
+        ("-y", axis(1, true)),
+        ("-z", axis(2, true)),
+    ])
+}
+
+/// The label inside unlabelled meshes cannot be the outside's.
+fn inside(value: &Value<'_>) -> Result<Region, SceneError> {
+    match value.integer(i32::MIN.into(), i32::MAX.into())? {
+        0 => Err(value.invalid("label 0 is the outside: write the label of the medium inside, such as 1")),
+        label => Ok(Region(label)),
+    }
+}

@@ -1,0 +1,157 @@
+//! Reads `[media.NAME]`: refractive index, absorption, scattering and phase function.
+
+use std::collections::BTreeMap;
+
+use super::allowed::Allowed;
+use super::error::SceneError;
+use super::nearest::suggestion;
+use super::spectrum_value;
+use super::value::Value;
+use super::{AbsorptionDescription, IorDescription, MediumDescription, PhaseDescription};
+use crate::spectrum::Spectrum;
+
+/// The medium that every scene has.
+pub(super) const AIR: &str = "air";
+
+/// Temperature in degrees Celsius and salinity in parts per thousand of sea water.
+const SEA_WATER: (f32, f32) = (10.0, 35.0);
+
+/// The media of a scene that defines none.
+pub(super) fn air_alone() -> BTreeMap<String, MediumDescription> {
+    BTreeMap::from([(AIR.to_owned(), MediumDescription::default())])
+}
+
+/// Reads every `[media.NAME]`.
+pub(super) fn read(value: &Value<'_>) -> Result<BTreeMap<String, MediumDescription>, SceneError> {
+    let mut media = air_alone();
+    let table = value.table("tables such as [media.sea]")?;
+    for (name, value) in table.entries() {
+        if name.get_ref().trim().is_empty() {
+            return Err(
+                table.invalid_key(name, "a medium needs a name: write for example [media.sea]".to_owned())
+            );
+        }
+        media.insert(name.get_ref().to_string(), medium(&value)?);
+    }
+    Ok(media)
+}
+
+/// The name of a medium that the scene defines; `user` says what needs it.
+pub(super) fn existing_medium<T>(
+    value: &Value<'_>,
+    media: &BTreeMap<String, T>,
+    user: &str,
+) -> Result<String, SceneError> {
+    let name = value.text("the name of a medium")?;
+    if media.contains_key(name) {
+        return Ok(name.to_owned());
+    }
+    let known: Vec<&str> = media.keys().map(String::as_str).collect();
+    let near = suggestion(name, &known, "the media of this scene are");
+    Err(value.invalid(format!("{user} needs a medium [media.{name}], which is not there: {near}")))
+}
+
+fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
+    let table = value.table("a table such as [media.sea]")?;
+    let default = MediumDescription::default();
+    let medium = MediumDescription {
+        ior: table.get("ior").map_or(Ok(default.ior), |v| ior(&v))?,
+        absorption: table.get("absorption").map(|v| absorption(&v)).transpose()?,
+        scattering: table
+            .get("scattering")
+            .map_or(Ok(default.scattering), |v| spectrum_value::spectrum(&v, &Allowed::NOT_NEGATIVE))?,
+        phase: table.get("phase").map_or(Ok(default.phase), |v| phase(&v))?,
+    };
+    table.finish()?;
+    Ok(medium)
+}
+
+impl Default for MediumDescription {
+    /// Clear, with index 1: air.
+    fn default() -> Self {
+        Self {
+            ior: IorDescription::Constant(1.0),
+            absorption: None,
+            scattering: Spectrum::Constant(0.0),
+            phase: PhaseDescription::Isotropic,
+        }
+    }
+}
+
+/// Substances with measured tables.
+#[derive(Clone, Copy)]
+enum Substance {
+    Water,
+    Ice,
+}
+
+const SUBSTANCES: [(&str, Substance); 2] = [("water", Substance::Water), ("ice", Substance::Ice)];
+
+/// `ior = ..`
+fn ior(value: &Value<'_>) -> Result<IorDescription, SceneError> {
+    const FORMS: &str =
+        "a number, { table = \"water\" }, { table = \"ice\" }, or { wavelength = [..], n = [..], k = [..] }";
+    if value.is_number() {
+        return Ok(IorDescription::Constant(value.number32(&Allowed::POSITIVE)?));
+    }
+    let table = value.table(FORMS)?;
+    let ior = match table.get("table").map(|v| v.choice(&SUBSTANCES)).transpose()? {
+        Some(Substance::Water) => {
+            let number = |key, allowed, default| table.get(key).map_or(Ok(default), |v| v.number32(allowed));
+            IorDescription::Water {
+                temperature: number("temperature", &Allowed::CELSIUS_OF_WATER, SEA_WATER.0)?,
+                salinity: number("salinity", &Allowed::SALINITY, SEA_WATER.1)?,
+            }
+        }
+        Some(Substance::Ice) => IorDescription::Ice,
+        None => {
+            let wavelengths = spectrum_value::wavelengths(&table)?;
+            let count = wavelengths.len();
+            let n = spectrum_value::samples(&table, "n", &Allowed::POSITIVE, count)?;
+            let k = match table.get("k") {
+                Some(_) => spectrum_value::samples(&table, "k", &Allowed::NOT_NEGATIVE, count)?,
+                None => vec![0.0; count],
+            };
+            IorDescription::Table { wavelengths, n, k }
+        }
+    };
+    table.finish()?;
+    Ok(ior)
+}
+
+/// `absorption = ..`
+fn absorption(value: &Value<'_>) -> Result<AbsorptionDescription, SceneError> {
+    if !value.has_key("table") {
+        let spectrum = spectrum_value::spectrum(value, &Allowed::NOT_NEGATIVE)?;
+        return Ok(AbsorptionDescription::Spectrum(spectrum));
+    }
+    let table = value.table("{ table = \"water\" }")?;
+    let substance = table.require("table", "write \"water\" or \"ice\"")?.choice(&SUBSTANCES)?;
+    table.finish()?;
+    Ok(match substance {
+        Substance::Water => AbsorptionDescription::Water,
+        Substance::Ice => AbsorptionDescription::Ice,
+    })
+}
+
+/// `phase = { kind = .. }`
+fn phase(value: &Value<'_>) -> Result<PhaseDescription, SceneError> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        Isotropic,
+        HenyeyGreenstein,
+    }
+    let forms = "{ kind = \"isotropic\" } or { kind = \"henyey-greenstein\", g = 0.9 }";
+    let table = value.table(forms)?;
+    let kind = table.require("kind", &format!("write {forms}"))?;
+    let kinds = [("isotropic", Kind::Isotropic), ("henyey-greenstein", Kind::HenyeyGreenstein)];
+    let phase = match kind.choice(&kinds)? {
+        Kind::Isotropic => PhaseDescription::Isotropic,
+        Kind::HenyeyGreenstein => {
+            let g = table.require("g", "write the mean cosine, such as g = 0.9")?;
+            PhaseDescription::HenyeyGreenstein { g: g.number32(&Allowed::MEAN_COSINE)? }
+        }
+    };
+    table.finish()?;
+    Ok(phase)
+}

@@ -1,0 +1,386 @@
+//! The scene file as plain data: what it says, checked, with every default filled in.
+//!
+//! [`SceneDescription::from_file`] reads it. Each kind of table has a file here that reads it; unknown keys,
+//! wrong types and numbers out of range are errors with line and column and what to write instead.
+//! [`default_scene`] writes the scene of a folder that has none. Values that depend on other files (meshes,
+//! images) are checked where those are read.
+
+mod allowed;
+mod camera;
+mod document;
+mod domain;
+mod error;
+mod examples;
+mod framed;
+mod frames;
+mod framing;
+mod material;
+mod media;
+mod nearest;
+mod output;
+mod regions;
+mod render;
+mod scene;
+mod sky;
+mod spectrum_value;
+mod sun;
+mod surfaces;
+mod value;
+
+pub use error::{Place, SceneError};
+pub use examples::{EXAMPLES, Example};
+pub use framed::default_scene;
+pub use framing::automatic_placement;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use glam::{DVec3, Vec3};
+
+use crate::mesh::Region;
+use crate::spectrum::Spectrum;
+
+/// Everything that a scene file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneDescription {
+    /// The scene file; messages name it.
+    pub file: PathBuf,
+    /// The folder that input paths are relative to (the scene file's).
+    pub directory: PathBuf,
+    /// The simulated frames; `None` makes the scene one still frame, number 1.
+    pub frames: Option<FramesDescription>,
+    /// Medium names by label; label 0 is "air" unless the file says otherwise.
+    pub regions: BTreeMap<Region, String>,
+    /// The simulated box and its walls.
+    pub domain: Option<DomainDescription>,
+    /// Media by name. "air" (index 1, clear) is there unless the file defines it.
+    pub media: BTreeMap<String, MediumDescription>,
+    /// Meshes that the simulator did not write.
+    pub surfaces: Vec<SurfaceDescription>,
+    /// The sun's disc.
+    pub sun: Option<SunDescription>,
+    /// Light from everywhere else.
+    pub sky: SkyDescription,
+    /// The camera.
+    pub camera: CameraDescription,
+    /// How to render.
+    pub render: RenderDescription,
+    /// Where to and in which form.
+    pub output: OutputDescription,
+}
+
+/// `[frames]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct FramesDescription {
+    /// Pattern (`####`, `%04d`, `$F4`), glob, or folder, relative to the scene file.
+    pub path: String,
+    /// Frames a second (24).
+    pub fps: f64,
+    /// Metres per unit of the frame files (1).
+    pub scale: f64,
+    /// The direction called up (z).
+    pub up: Axis,
+    /// Where shading normals come from (smooth).
+    pub normals: NormalsDescription,
+    /// The label inside closed meshes that carry no labels (1).
+    pub inside: Region,
+}
+
+/// A signed coordinate axis, as in `up = "z"` or `up = "-y"`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// 0, 1, 2 for x, y, z.
+    pub index: usize,
+    /// True for the negative direction.
+    pub negative: bool,
+}
+
+impl Axis {
+    /// The default up.
+    pub const Z: Self = Self { index: 2, negative: false };
+
+    /// The unit vector.
+    pub fn vector(self) -> Vec3 {
+        let mut v = Vec3::ZERO;
+        v[self.index] = if self.negative { -1.0 } else { 1.0 };
+        v
+    }
+}
+
+/// Where shading normals come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalsDescription {
+    /// Averaged over the faces between the same two regions, never across a triple line.
+    #[default]
+    Smooth,
+    /// The faces' own.
+    Flat,
+    /// The file's, where they are finite and agree with the face.
+    File,
+}
+
+/// `[domain]`: the faces on the planes of the simulated box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DomainDescription {
+    /// Least corner, in the frame files' units.
+    pub min: DVec3,
+    /// Greatest corner, in the frame files' units.
+    pub max: DVec3,
+    /// The four walls that stand upright.
+    pub sides: Wall,
+    /// The wall below; never [`Wall::Extend`]: below extended sides it is open unless it is opaque.
+    pub bottom: Wall,
+    /// The wall above; kept unless named, never [`Wall::Extend`].
+    pub top: Wall,
+    /// Reflectance of opaque walls (0.5).
+    pub reflectance: Spectrum,
+}
+
+/// What the faces on a plane of the simulated box are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wall {
+    /// An interface like any other.
+    #[default]
+    Keep,
+    /// An index-matched boundary: the region changes, nothing bends or reflects, L / n^2 holds.
+    Open,
+    /// A diffuse wall.
+    Opaque,
+    /// The surface goes on flat to the horizon, fluid below it without end.
+    Extend,
+}
+
+/// `[media.NAME]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediumDescription {
+    /// Refractive index.
+    pub ior: IorDescription,
+    /// Absorption in 1/m; `None` takes what the index's table implies (4 pi k / lambda), or nothing.
+    pub absorption: Option<AbsorptionDescription>,
+    /// Scattering in 1/m.
+    pub scattering: Spectrum,
+    /// Phase function of the scattering.
+    pub phase: PhaseDescription,
+}
+
+/// `ior = ..`
+#[derive(Clone, Debug, PartialEq)]
+pub enum IorDescription {
+    /// The same at every wavelength.
+    Constant(f32),
+    /// Pure or sea water after Quan and Fry: `{ table = "water", temperature = 10, salinity = 35 }`.
+    Water {
+        /// Degrees Celsius.
+        temperature: f32,
+        /// Parts per thousand.
+        salinity: f32,
+    },
+    /// Ice after Warren and Brandt: `{ table = "ice" }`.
+    Ice,
+    /// `{ wavelength = [..], n = [..], k = [..] }`
+    Table {
+        /// Wavelengths in nm, strictly rising.
+        wavelengths: Vec<f32>,
+        /// Real part.
+        n: Vec<f32>,
+        /// Imaginary part (k >= 0 absorbs).
+        k: Vec<f32>,
+    },
+}
+
+/// `absorption = ..`
+#[derive(Clone, Debug, PartialEq)]
+pub enum AbsorptionDescription {
+    /// Coefficients in 1/m.
+    Spectrum(Spectrum),
+    /// Measured absorption of pure water: `{ table = "water" }`.
+    Water,
+    /// Measured absorption of pure ice: `{ table = "ice" }`.
+    Ice,
+}
+
+/// `phase = { kind = .. }`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PhaseDescription {
+    /// The same in every direction.
+    Isotropic,
+    /// Henyey and Greenstein's, with its mean cosine g in (-1, 1).
+    HenyeyGreenstein {
+        /// Mean cosine.
+        g: f32,
+    },
+}
+
+/// `[[surfaces]]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceDescription {
+    /// Mesh file or per-frame pattern, relative to the scene file.
+    pub mesh: String,
+    /// Where shading normals come from.
+    pub normals: NormalsDescription,
+    /// Metres per unit of the file.
+    pub scale: f64,
+    /// Added after scaling, in metres.
+    pub translate: DVec3,
+    /// What the surface is.
+    pub material: MaterialDescription,
+}
+
+/// `material = { kind = .. }`, with the media of the two sides where the kind has any.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialDescription {
+    /// Lambertian on both sides.
+    Diffuse {
+        /// Reflectance in [0, 1].
+        reflectance: Spectrum,
+    },
+    /// A smooth boundary between two media.
+    Dielectric {
+        /// Medium on the front.
+        front: String,
+        /// Medium on the back.
+        back: String,
+    },
+    /// A boundary that changes the medium and bends nothing.
+    Null {
+        /// Medium on the front.
+        front: String,
+        /// Medium on the back.
+        back: String,
+    },
+    /// A smooth metal of complex index eta + i k relative to vacuum.
+    Conductor {
+        /// Real part.
+        eta: Spectrum,
+        /// Imaginary part.
+        k: Spectrum,
+    },
+    /// One-sided (front) light; opaque and black otherwise.
+    Emitter {
+        /// Emitted radiance.
+        radiance: Spectrum,
+    },
+}
+
+/// `[sun]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct SunDescription {
+    /// Unit vector towards the sun.
+    pub direction: Vec3,
+    /// Diameter of the disc in degrees (0.53).
+    pub angular_diameter: f32,
+    /// Irradiance on a plane perpendicular to the direction.
+    pub irradiance: Spectrum,
+}
+
+/// `[sky]`
+#[derive(Clone, Debug, PartialEq)]
+pub enum SkyDescription {
+    /// The same radiance from everywhere; 0 when the file has no `[sky]`.
+    Constant(Spectrum),
+    /// A latitude-longitude picture (EXR or HDR), its top towards `frames.up`.
+    Image {
+        /// The file, relative to the scene file.
+        image: String,
+    },
+}
+
+/// `[camera]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraDescription {
+    /// Where the camera is; `None` frames the first frame.
+    pub placement: Option<Placement>,
+    /// The direction that is up in the picture, a unit vector (`frames.up`).
+    pub up: Vec3,
+    /// Field of view (40 degrees vertically).
+    pub fov: FieldOfView,
+    /// Width and height in pixels (640 x 360).
+    pub resolution: [u32; 2],
+}
+
+/// Where the camera is and what it looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Where the camera is, in metres.
+    pub eye: DVec3,
+    /// What it looks at, in metres; not the eye, and not straight along the camera's up.
+    pub target: DVec3,
+}
+
+/// Full angle of view in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FieldOfView {
+    /// Across the height.
+    Vertical(f32),
+    /// Across the width.
+    Horizontal(f32),
+}
+
+/// `[render]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderDescription {
+    /// Which integrator (auto).
+    pub integrator: IntegratorKind,
+    /// Samples a pixel (64).
+    pub samples: u32,
+    /// Interactions along a path; 0 is no limit (0).
+    pub max_depth: u32,
+    /// Both branches are followed on the first `split` interface hits (1).
+    pub split: u32,
+    /// Seed of every random number (0).
+    pub seed: u64,
+    /// Pixel filter (box).
+    pub filter: FilterKind,
+}
+
+/// `render.integrator`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IntegratorKind {
+    /// What suits the scene; at present path tracing.
+    #[default]
+    Auto,
+    /// Volumetric path tracing.
+    Path,
+    /// The open part of the hemisphere over what the camera sees.
+    AmbientOcclusion,
+}
+
+/// `render.filter`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FilterKind {
+    /// The pixel's own area.
+    #[default]
+    Box,
+    /// A Gaussian of standard deviation 0.5 pixels within 1.5.
+    Gaussian,
+    /// The four-term Blackman-Harris window within 2 pixels.
+    BlackmanHarris,
+}
+
+/// `[output]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputDescription {
+    /// File or pattern relative to the current directory; `None` is `out/<folder>/frame_####.exr`.
+    pub path: Option<String>,
+    /// Also write a PNG beside each EXR (true).
+    pub png: bool,
+    /// Exposure of the PNG in stops (0).
+    pub exposure: f32,
+    /// Extra layers of the EXR.
+    pub aovs: Vec<Aov>,
+}
+
+/// `output.aovs`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Aov {
+    /// Colour of the first surface.
+    Albedo,
+    /// Shading normal of the first surface, in world coordinates.
+    Normal,
+    /// Position of the first surface, in metres.
+    Position,
+    /// Depth of the first surface along the viewing axis, in metres.
+    Depth,
+    /// Variance of the pixel's mean.
+    Variance,
+}

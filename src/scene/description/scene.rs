@@ -1,0 +1,88 @@
+//! The scene file as a whole: reading, the list of its tables, and what the tables say about each other.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use toml::de::DeTable;
+
+use super::document::{Source, Table};
+use super::error::SceneError;
+use super::{SceneDescription, SkyDescription};
+use super::{camera, domain, frames, media, output, regions, render, sky, sun, surfaces};
+
+/// Longest scene file that is read: measured tables of spectra fit in many times, meshes given by mistake do
+/// not.
+const LONGEST: u64 = 16 << 20;
+
+impl SceneDescription {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`], with the place of what is wrong.
+    pub fn from_file(file: &Path) -> Result<Self, SceneError> {
+        let io = |source| SceneError::Io { file: file.to_owned(), source };
+        let mut bytes = Vec::new();
+        File::open(file).and_then(|opened| opened.take(LONGEST + 1).read_to_end(&mut bytes)).map_err(io)?;
+        if bytes.len() as u64 > LONGEST {
+            return Err(SceneError::TooLong { file: file.to_owned(), limit: LONGEST });
+        }
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, file),
+            Err(error) => {
+                let readable = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+                let place = Source { text: &readable, file }.place(readable.len());
+                let message = "the bytes here are not UTF-8: save the file as UTF-8".to_owned();
+                Err(SceneError::Syntax { place, message })
+            }
+        }
+    }
+
+    /// Reads the text of a scene file; `file` is named in messages, and its folder is what inputs are
+    /// relative to.
+    ///
+    /// # Errors
+    /// [`SceneError`], with the place of what is wrong.
+    pub fn parse(text: &str, file: &Path) -> Result<Self, SceneError> {
+        let source = Source { text, file };
+        let root = DeTable::parse(text).map_err(|error| SceneError::Syntax {
+            place: source.place(error.span().map_or(0, |span| span.start)),
+            message: error.message().to_owned(),
+        })?;
+        read(source, Table::new(source, String::new(), 0, root.get_ref()))
+    }
+}
+
+/// Reads every table. Unknown ones are reported first: a mistyped name explains most errors that would
+/// follow.
+fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneError> {
+    let [frames, regions, domain, media, surfaces, sun, sky, camera, render, output] =
+        ["frames", "regions", "domain", "media", "surfaces", "sun", "sky", "camera", "render", "output"]
+            .map(|name| root.get(name));
+    root.finish()?;
+    let frames = frames.map(|table| frames::read(&table)).transpose()?;
+    let media = media.map_or_else(|| Ok(media::air_alone()), |table| media::read(&table))?;
+    let up = frames.as_ref().map_or(super::Axis::Z, |frames| frames.up);
+    Ok(SceneDescription {
+        file: source.file.to_owned(),
+        directory: directory(source.file).to_owned(),
+        regions: regions.map_or_else(|| Ok(regions::air_outside()), |table| regions::read(&table, &media))?,
+        domain: domain.map(|table| domain::read(&table)).transpose()?,
+        surfaces: surfaces.map_or_else(|| Ok(Vec::new()), |table| surfaces::read(&table, &media))?,
+        sun: sun.map(|table| sun::read(&table)).transpose()?,
+        sky: sky.map_or_else(|| Ok(SkyDescription::default()), |table| sky::read(&table))?,
+        camera: camera::read(camera.as_ref(), up)?,
+        render: render.map_or_else(|| Ok(Default::default()), |table| render::read(&table))?,
+        output: output.map_or_else(|| Ok(Default::default()), |table| output::read(&table))?,
+        frames,
+        media,
+    })
+}
+
+/// The folder of a file; that of a bare name is the current one.
+fn directory(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}

@@ -1,0 +1,86 @@
+//! The triangles of one frame, all meshes in one list.
+
+use glam::Vec3;
+
+use super::surface::SurfaceId;
+use crate::accel::Hit;
+use crate::geometry::offset::SurfacePoint;
+use crate::geometry::triangle::scaled_normal;
+
+/// Triangles, their shading normals and what they are.
+#[derive(Clone, Debug, Default)]
+pub struct Geometry {
+    /// Vertices in metres from the scene's origin.
+    pub positions: Vec<Vec3>,
+    /// Three vertices a triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// What each triangle is.
+    pub surfaces: Vec<SurfaceId>,
+    /// Shading normals.
+    pub normals: Vec<Vec3>,
+    /// Three indices into `normals` a triangle, or [`Geometry::FLAT`].
+    pub corners: Vec<[u32; 3]>,
+}
+
+/// Where and how a ray meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceHit {
+    /// Which triangle.
+    pub triangle: u32,
+    /// Distance along the ray in metres.
+    pub t: f32,
+    /// The point, with the bound of its rounding error.
+    pub point: SurfacePoint,
+    /// Unit normal of the triangle, on the side that the ray comes from.
+    pub ng: Vec3,
+    /// Shading normal on the same side; `ng` where the two disagree about the ray.
+    pub ns: Vec3,
+    /// True when the ray comes from the front.
+    pub from_front: bool,
+}
+
+impl Geometry {
+    /// Marks a triangle without shading normals.
+    pub const FLAT: [u32; 3] = [u32::MAX; 3];
+
+    /// The three vertices of a triangle.
+    #[inline]
+    pub fn vertices(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    }
+
+    /// Point and normals at a hit of a ray with unit `direction`.
+    pub fn surface_hit(&self, hit: &Hit, direction: Vec3) -> SurfaceHit {
+        let v = self.vertices(hit.triangle);
+        let side = if hit.from_front { 1.0 } else { -1.0 };
+        let ng = unit_normal(&v) * side;
+        let corners = self.corners[hit.triangle as usize];
+        let ns = if corners == Self::FLAT {
+            ng
+        } else {
+            let [a, b, c] = corners.map(|i| self.normals[i as usize]);
+            let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
+            let ns = mixed.normalize_or(ng * side) * side;
+            if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng }
+        };
+        SurfaceHit {
+            triangle: hit.triangle,
+            t: hit.t,
+            point: SurfacePoint::on_triangle(&v, hit.barycentric),
+            ng,
+            ns,
+            from_front: hit.from_front,
+        }
+    }
+}
+
+/// The right-hand normal; in double precision where single precision underflows.
+fn unit_normal(v: &[Vec3; 3]) -> Vec3 {
+    let n = scaled_normal(v);
+    let squared = n.length_squared();
+    if squared > 1e-30 && squared.is_finite() {
+        return n / squared.sqrt();
+    }
+    let d = v.map(|p| p.as_dvec3());
+    (d[1] - d[0]).cross(d[2] - d[0]).normalize_or(glam::DVec3::Z).as_vec3()
+}

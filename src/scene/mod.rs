@@ -1,0 +1,17 @@
+//! One frame as rays see it, and the scene file that says what is in it.
+//!
+//! A [`description::SceneDescription`] is the scene file as plain data. [`world::World`] is what all frames share;
+//! [`assembly`] adds the meshes of one frame and gives a [`frame::Frame`], which light transport reads.
+
+pub mod assembly;
+pub mod camera;
+pub mod description;
+pub mod domain;
+pub mod error;
+pub mod frame;
+pub mod geometry;
+pub mod needs;
+pub mod surface;
+pub mod world;
+
+pub use error::FrameError;

@@ -1,0 +1,95 @@
+//! What a frame needs of the renderer, and what is left out.
+
+use std::fmt;
+
+/// Computed from a frame; light transport is specialised over it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Some medium that is in the frame scatters.
+    pub scattering: bool,
+    /// Some light is worth looking for from a vertex.
+    pub direct_light: bool,
+    /// Some boundary is passed straight through, so shadow rays cannot stop at the first hit.
+    pub matched_interfaces: bool,
+    /// Some medium absorbs or scatters.
+    pub attenuation: bool,
+    /// Something is given over wavelength.
+    pub spectral: bool,
+    /// There are diffuse surfaces.
+    pub diffuse: bool,
+    /// A sun shines on a refracting interface: its light beyond is left out.
+    pub sun_behind_interface: bool,
+}
+
+impl Needs {
+    /// A line for each part: what is used or left out, and why.
+    pub fn lines(&self) -> Vec<NeedLine> {
+        let line = |part, used, because| NeedLine { part, used, because };
+        vec![
+            line(
+                "spectral lanes",
+                self.spectral,
+                if self.spectral { "something is given over wavelength" } else { "all is given in RGB" },
+            ),
+            line(
+                "scattering",
+                self.scattering,
+                if self.scattering {
+                    "a medium in the frame scatters"
+                } else {
+                    "no medium in the frame scatters"
+                },
+            ),
+            line(
+                "transmittance",
+                self.attenuation,
+                if self.attenuation { "a medium absorbs or scatters" } else { "all media are clear" },
+            ),
+            line(
+                "next-event estimation",
+                self.direct_light,
+                if self.direct_light {
+                    "a sun, a picture of the sky or an emitter can be seen directly from a scattering or diffuse vertex"
+                } else {
+                    "no light can be looked for from any vertex"
+                },
+            ),
+            line(
+                "shadow rays through boundaries",
+                self.direct_light && self.matched_interfaces,
+                if self.matched_interfaces {
+                    "some boundaries are index-matched"
+                } else {
+                    "no boundary is index-matched"
+                },
+            ),
+            line(
+                "sun through refracting interfaces",
+                false,
+                if self.sun_behind_interface {
+                    "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out"
+                } else {
+                    "no sun shines on a refracting interface"
+                },
+            ),
+        ]
+    }
+}
+
+/// One line of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NeedLine {
+    /// The part of the renderer.
+    pub part: &'static str,
+    /// Whether it runs.
+    pub used: bool,
+    /// Why.
+    pub because: &'static str,
+}
+
+impl fmt::Display for NeedLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let state = if self.used { "used" } else { "left out" };
+        write!(f, "{:<34} {state:<9} {}", self.part, self.because)
+    }
+}

@@ -1,0 +1,208 @@
+//! What all frames of a sequence share: media, lights, the camera, the origin.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::camera::Camera;
+use super::description::{
+    AbsorptionDescription, FramesDescription, IntegratorKind, IorDescription, MaterialDescription,
+    MediumDescription, PhaseDescription, Placement, SceneDescription, SkyDescription,
+};
+use super::error::FrameError;
+use crate::light::{Environment, Picture, Sun};
+use crate::mesh::{self, RawMesh, Region};
+use crate::optics::RefractiveIndex;
+use crate::optics::medium::{Medium, MediumId};
+use crate::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
+use crate::sequence::has_place;
+use crate::spectrum::{LaneMode, Role, Spectrum};
+
+/// A scene without its meshes.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// The scene file.
+    pub description: SceneDescription,
+    /// What the lanes of paths stand for.
+    pub mode: LaneMode,
+    /// The point that coordinates are relative to, in metres; the same for every frame.
+    pub origin: DVec3,
+    /// The camera.
+    pub camera: Camera,
+    /// Media by [`MediumId`]; the first is that of region 0.
+    pub media: Vec<Medium>,
+    /// The sky.
+    pub environment: Environment,
+    /// The sun.
+    pub sun: Option<Sun>,
+    /// Meshes of `[[surfaces]]` that are the same in every frame; `None` for those with a pattern.
+    pub(super) still_meshes: Vec<Option<RawMesh>>,
+    names: BTreeMap<String, MediumId>,
+}
+
+impl World {
+    /// Prepares everything but the meshes. `placement` is where the camera goes when the scene does not say.
+    ///
+    /// # Errors
+    /// When a picture of the sky or a mesh that is the same in every frame cannot be read.
+    pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+        let mode = lane_mode(&description);
+        let Placement { eye, target } = description.camera.placement.clone().unwrap_or(placement);
+        let origin = snapped(eye);
+        let view = &description.camera;
+        let camera = Camera::new(eye - origin, target - origin, view.up, view.fov, view.resolution);
+        let (media, names) = media_of(&description, mode);
+        let environment = environment_of(&description, mode)?;
+        let sun = description.sun.as_ref().map(|sun| {
+            let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
+            Sun::new(sun.direction, sun.angular_diameter, irradiance)
+        });
+        let still_meshes = description
+            .surfaces
+            .iter()
+            .map(|s| still_mesh(&description.directory, &s.mesh))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { still_meshes, description, mode, origin, camera, media, environment, sun, names })
+    }
+
+    /// The medium that fills a region.
+    pub fn medium_of_region(&self, region: Region, path: &Path) -> Result<MediumId, FrameError> {
+        self.description.regions.get(&region).and_then(|name| self.medium_of_name(name)).ok_or_else(|| {
+            FrameError::NoMedium { path: path.into(), label: region.0, scene: self.description.file.clone() }
+        })
+    }
+
+    /// The medium of a name in `[media]`.
+    pub fn medium_of_name(&self, name: &str) -> Option<MediumId> {
+        self.names.get(name).copied()
+    }
+
+    /// `[frames]`, if the scene has any.
+    pub fn frames(&self) -> Option<&FramesDescription> {
+        self.description.frames.as_ref()
+    }
+}
+
+fn still_mesh(directory: &Path, name: &str) -> Result<Option<RawMesh>, FrameError> {
+    if has_place(name) { Ok(None) } else { Ok(Some(mesh::read(&directory.join(name))?)) }
+}
+
+/// Coordinates are exact to f32 relative to this point: near the eye, on a grid of 1/256 of its distance from zero,
+/// so that coordinates of like size keep their digits when it is subtracted.
+fn snapped(eye: DVec3) -> DVec3 {
+    let size = eye.abs().max_element();
+    if size == 0.0 {
+        return DVec3::ZERO;
+    }
+    let (_, exponent) = libm::frexp(size);
+    let grid = libm::ldexp(1.0, exponent - 8);
+    (eye / grid).round() * grid
+}
+
+/// Spectral as soon as one thing that is used is.
+fn lane_mode(description: &SceneDescription) -> LaneMode {
+    if description.render.integrator == IntegratorKind::AmbientOcclusion {
+        return LaneMode::Rgb;
+    }
+    let spectral = description.media.values().any(medium_is_spectral)
+        || description.surfaces.iter().any(|s| material_is_spectral(&s.material))
+        || description.sun.as_ref().is_some_and(|sun| sun.irradiance.is_spectral())
+        || matches!(&description.sky, SkyDescription::Constant(sky) if sky.is_spectral())
+        || description.domain.as_ref().is_some_and(|d| d.reflectance.is_spectral());
+    if spectral { LaneMode::Spectral } else { LaneMode::Rgb }
+}
+
+fn material_is_spectral(material: &MaterialDescription) -> bool {
+    match material {
+        MaterialDescription::Diffuse { reflectance } => reflectance.is_spectral(),
+        MaterialDescription::Conductor { eta, k } => eta.is_spectral() || k.is_spectral(),
+        MaterialDescription::Emitter { radiance } => radiance.is_spectral(),
+        MaterialDescription::Dielectric { .. } | MaterialDescription::Null { .. } => false,
+    }
+}
+
+fn medium_is_spectral(medium: &MediumDescription) -> bool {
+    absorption_of(medium).is_spectral() || medium.scattering.is_spectral()
+}
+
+fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTreeMap<String, MediumId>) {
+    let outside = description.regions.get(&Region::OUTSIDE);
+    let mut order: Vec<&String> = description.media.keys().collect();
+    order.sort_by_key(|name| (Some(*name) != outside, *name));
+    let media = order.iter().map(|name| medium_of(name, &description.media[*name], mode)).collect();
+    let names = order.into_iter().cloned().zip((0..).map(MediumId)).collect();
+    (media, names)
+}
+
+fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
+    Medium {
+        name: name.into(),
+        n: index_of(&medium.ior).for_rays(),
+        sigma_a: absorption_of(medium).prepare(Role::Coefficient, mode),
+        sigma_s: medium.scattering.prepare(Role::Coefficient, mode),
+        phase: match medium.phase {
+            PhaseDescription::Isotropic => PhaseFunction::Isotropic(Isotropic),
+            PhaseDescription::HenyeyGreenstein { g } => {
+                PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g })
+            }
+        },
+    }
+}
+
+fn index_of(ior: &IorDescription) -> RefractiveIndex {
+    match ior.clone() {
+        IorDescription::Constant(n) => RefractiveIndex::Constant(n),
+        IorDescription::Water { temperature, salinity } => RefractiveIndex::Water { temperature, salinity },
+        IorDescription::Ice => RefractiveIndex::Ice,
+        IorDescription::Table { wavelengths, n, k } => RefractiveIndex::Table { wavelengths, n, k },
+    }
+}
+
+/// Absorption as given, or what the index's imaginary part implies.
+fn absorption_of(medium: &MediumDescription) -> Spectrum {
+    match &medium.absorption {
+        Some(AbsorptionDescription::Spectrum(spectrum)) => spectrum.clone(),
+        Some(AbsorptionDescription::Water) => {
+            implied(&RefractiveIndex::Water { temperature: 20.0, salinity: 0.0 })
+        }
+        Some(AbsorptionDescription::Ice) => implied(&RefractiveIndex::Ice),
+        None => implied(&index_of(&medium.ior)),
+    }
+}
+
+fn implied(index: &RefractiveIndex) -> Spectrum {
+    index.absorption().unwrap_or(Spectrum::Constant(0.0))
+}
+
+fn environment_of(description: &SceneDescription, mode: LaneMode) -> Result<Environment, FrameError> {
+    match &description.sky {
+        SkyDescription::Constant(radiance) => {
+            Ok(Environment::Constant(radiance.prepare(Role::Illuminant, mode)))
+        }
+        SkyDescription::Image { image } => {
+            let picture = Picture::read(&description.directory.join(image))?;
+            let up = description.frames.as_ref().map_or(super::description::Axis::Z, |f| f.up);
+            Ok(Environment::image(picture, up.vector(), mode))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_origin_is_near_the_eye_and_on_a_grid_of_a_power_of_two() {
+        for eye in [DVec3::new(1.1, 2.3, -2.3), DVec3::new(500_000.37, 4_000_000.9, 31.5), DVec3::splat(1e-5)]
+        {
+            let origin = snapped(eye);
+            let size = eye.abs().max_element();
+            assert!((eye - origin).abs().max_element() <= size / 256.0);
+            // Nine bits at most: subtracting it from a float of like size is exact.
+            let bits = origin / libm::ldexp(1.0, libm::frexp(size).1 - 8);
+            assert_eq!(bits, bits.round());
+        }
+        assert_eq!(snapped(DVec3::ZERO), DVec3::ZERO);
+    }
+}
