@@ -48,3 +48,5 @@ pub mod optics;
 pub mod light;
 
 pub mod scene;
+
+pub mod integrator;

@@ -1,0 +1,49 @@
+//! What happens while paths are traced, and how often.
+
+use std::ops::AddAssign;
+
+use serde::Serialize;
+
+/// Rays, and events that ought to be rare.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counters {
+    /// Rays traced for paths.
+    pub rays: u64,
+    /// Rays traced towards lights.
+    pub shadow_rays: u64,
+    /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
+    pub label_mismatches: u64,
+    /// Samples whose radiance was not finite; they are left out of the mean.
+    pub non_finite: u64,
+    /// Paths that met nothing although they were inside a fluid that ends somewhere.
+    pub escaped_inside: u64,
+    /// Paths cut at the hard limit of interactions.
+    pub cut: u64,
+    /// Loss-free specular chains (total internal reflection for ever) that ended at the hard limit.
+    pub trapped: u64,
+}
+
+impl Counters {
+    /// Greatest part of the rays that may be label mismatches in a sound frame.
+    pub const MISMATCH_LIMIT: f64 = 1e-6;
+
+    /// True when so many labels disagree that the mesh cannot be what it says.
+    ///
+    /// A handful is allowed whatever the number of rays: below it a rate means nothing.
+    pub fn too_many_mismatches(&self) -> bool {
+        let allowed = (self.rays as f64 * Self::MISMATCH_LIMIT).max(8.0);
+        self.label_mismatches as f64 > allowed
+    }
+}
+
+impl AddAssign for Counters {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.shadow_rays += other.shadow_rays;
+        self.label_mismatches += other.label_mismatches;
+        self.non_finite += other.non_finite;
+        self.escaped_inside += other.escaped_inside;
+        self.cut += other.cut;
+        self.trapped += other.trapped;
+    }
+}

@@ -1,0 +1,98 @@
+//! Radiance along a path.
+//!
+//! A tracer follows the light transport of one sample of one pixel: no threads, no film. It reads a
+//! [`crate::scene::frame::Frame`] and gives an [`EyeSample`].
+
+pub mod ambient_occlusion;
+pub mod counters;
+mod direct;
+pub mod path;
+mod vertex;
+
+use glam::Vec3;
+
+pub use ambient_occlusion::AmbientOcclusion;
+pub use counters::Counters;
+pub use path::PathTracer;
+
+use crate::optics::medium::MediumLanes;
+use crate::sampling::SampleStream;
+use crate::scene::frame::Frame;
+use crate::spectrum::{Lanes, Wavelengths};
+
+/// What one sample of a pixel brings back.
+#[derive(Clone, Copy, Debug)]
+pub struct EyeSample {
+    /// Radiance on the lanes of the sample's wavelengths.
+    pub radiance: Lanes,
+    /// The first surface that the eye ray meets; `None` when it escapes.
+    pub first: Option<FirstHit>,
+}
+
+/// The first surface that an eye ray meets (index-matched boundaries are looked through).
+#[derive(Clone, Copy, Debug)]
+pub struct FirstHit {
+    /// Distance along the ray in metres.
+    pub distance: f32,
+    /// Point in metres from the scene's origin.
+    pub position: Vec3,
+    /// Shading normal on the side of the eye.
+    pub normal: Vec3,
+    /// Colour of the surface; white for interfaces and lights.
+    pub albedo: Lanes,
+}
+
+/// What a worker keeps between samples: no allocation in the inner loop.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    /// Coefficients of every medium at the wavelengths of the current sample.
+    pub(crate) media: Vec<MediumLanes>,
+    /// Branches of the current sample that are still to be followed.
+    pub(crate) branches: Vec<path::Branch>,
+    /// Events of all samples so far.
+    pub counters: Counters,
+}
+
+impl Scratch {
+    /// Takes the media at the wavelengths of a new sample.
+    pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths) {
+        self.media.clear();
+        self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
+        self.branches.clear();
+    }
+}
+
+/// A way to compute the radiance of a sample.
+#[derive(Clone, Copy, Debug)]
+pub enum Integrator {
+    /// Volumetric path tracing.
+    Path(PathTracer),
+    /// The open part of the hemisphere over the first surface.
+    AmbientOcclusion(AmbientOcclusion),
+}
+
+impl Integrator {
+    /// The radiance through the point (x, y) of the picture, in pixels from the upper left corner.
+    pub fn sample(
+        &self,
+        frame: &Frame,
+        scratch: &mut Scratch,
+        point: [f32; 2],
+        wavelengths: &Wavelengths,
+        stream: SampleStream,
+    ) -> EyeSample {
+        let ray = frame.camera.ray(point[0], point[1]);
+        match self {
+            Self::Path(tracer) => tracer.trace(frame, scratch, &ray, wavelengths, stream),
+            Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, &ray, stream),
+        }
+    }
+
+    /// The name in the scene file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Path(_) => "path",
+            Self::AmbientOcclusion(_) => "ambient-occlusion",
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Volumetric path tracing through labelled interfaces.
+//!
+//! Both branches, reflection and refraction, are followed at the first `split` interfaces of a path; afterwards one is
+//! chosen by Fresnel's reflectance. In media that only absorb the transmittance is exact; in media that scatter the
+//! free flight is drawn in one lane and weighted over all (one-sample spectral multiple importance sampling).
+//!
+//! Russian roulette acts on the throughput without the factors (n_a / n_b)^2 of the boundaries crossed, relative to the
+//! branch's share at the splits, so that a path which loses nothing is never ended by it.
+
+use glam::Vec3;
+
+use super::direct::Receiver;
+use super::{EyeSample, FirstHit, Scratch};
+use crate::accel::Ignored;
+use crate::geometry::Ray;
+use crate::optics::medium::{FreeFlight, MediumId};
+use crate::optics::phase::one_minus_cos;
+use crate::sampling::SampleStream;
+use crate::scene::frame::Frame;
+use crate::scene::geometry::SurfaceHit;
+use crate::spectrum::{Lanes, Wavelengths};
+
+/// Volumetric path tracing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathTracer {
+    /// Interactions along a path at most; 0 for no limit but [`HARD_LIMIT`].
+    pub max_depth: u32,
+    /// Both branches are followed at this many interfaces.
+    pub split: u32,
+}
+
+/// From this interaction on a path survives with [`LATE_SURVIVAL`], whatever its throughput.
+const LATE_ROULETTE: u32 = 1024;
+/// Probability of going on at each interaction beyond [`LATE_ROULETTE`].
+const LATE_SURVIVAL: f32 = 0.98;
+/// No path goes on beyond this many interactions.
+pub const HARD_LIMIT: u32 = 65_536;
+
+/// A path being followed.
+#[derive(Clone, Copy, Debug)]
+pub struct Branch {
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
+    /// The triangle that the ray leaves.
+    pub(super) leaves: u32,
+    pub(super) medium: MediumId,
+    pub(super) throughput: Lanes,
+    /// The product of (n_a / n_b)^2 that is part of the throughput.
+    pub(super) index_factor: f32,
+    /// The branch's share of the path at its splits, which roulette measures the throughput by.
+    pub(super) share: f32,
+    pub(super) interactions: u32,
+    /// Interactions and index-matched boundaries.
+    pub(super) steps: u32,
+    pub(super) splits_left: u32,
+    pub(super) arrival: Arrival,
+    pub(super) stream: SampleStream,
+}
+
+/// How a path came to where it is, which decides what light counts when it runs into a source.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// Nothing but specular surfaces since the eye.
+    pub(super) specular_from_eye: bool,
+    /// The last vertex that was lit by next-event estimation, if the way from there was straight.
+    pub(super) lit: Option<LitVertex>,
+}
+
+/// A vertex at which next-event estimation looked for the lights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LitVertex {
+    pub(super) position: Vec3,
+    /// Density with which the path's direction was drawn there.
+    pub(super) pdf_w: f32,
+}
+
+/// Whether a branch goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fate {
+    GoesOn,
+    Ends,
+}
+
+/// The scene and the sample that a path belongs to.
+pub(super) struct Sample<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) wavelengths: &'a Wavelengths,
+    pub(super) radiance: Lanes,
+    pub(super) first: Option<FirstHit>,
+}
+
+impl PathTracer {
+    /// Radiance along an eye ray.
+    pub(super) fn trace(
+        &self,
+        frame: &Frame,
+        scratch: &mut Scratch,
+        ray: &Ray,
+        wavelengths: &Wavelengths,
+        stream: SampleStream,
+    ) -> EyeSample {
+        scratch.start(frame, wavelengths);
+        scratch.branches.push(Branch {
+            origin: ray.origin,
+            direction: ray.direction,
+            leaves: u32::MAX,
+            medium: frame.camera_medium,
+            throughput: frame.mode.white(),
+            index_factor: 1.0,
+            share: 1.0,
+            interactions: 0,
+            steps: 0,
+            splits_left: self.split,
+            arrival: Arrival { specular_from_eye: true, lit: None },
+            stream,
+        });
+        let mut sample = Sample { frame, scratch, wavelengths, radiance: Lanes::ZERO, first: None };
+        // Light transport is compiled four times over what the scene needs in its inner loop.
+        match (frame.needs.scattering, frame.needs.direct_light) {
+            (false, false) => self.follow_all::<false, false>(&mut sample),
+            (false, true) => self.follow_all::<false, true>(&mut sample),
+            (true, false) => self.follow_all::<true, false>(&mut sample),
+            (true, true) => self.follow_all::<true, true>(&mut sample),
+        }
+        EyeSample { radiance: sample.radiance, first: sample.first }
+    }
+
+    fn follow_all<const SCATTERING: bool, const DIRECT: bool>(&self, sample: &mut Sample) {
+        while let Some(mut branch) = sample.scratch.branches.pop() {
+            while sample.advance::<SCATTERING, DIRECT>(&mut branch) == Fate::GoesOn {
+                if branch.interactions == self.max_depth && self.max_depth > 0 {
+                    sample.scratch.counters.cut += 1;
+                    break;
+                }
+            }
+        }
+    }
+}
+
+impl Sample<'_> {
+    /// Follows a branch to its next event and through it.
+    fn advance<const SCATTERING: bool, const DIRECT: bool>(&mut self, branch: &mut Branch) -> Fate {
+        if branch.steps >= HARD_LIMIT {
+            return self.cut(branch);
+        }
+        branch.steps += 1;
+        let u = branch.stream.next4();
+        let medium = self.scratch.media[branch.medium.0 as usize];
+        let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u[0]));
+        let t_max = flight.map_or(f32::INFINITY, |f| f.distance);
+        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max };
+        self.scratch.counters.rays += 1;
+        let hit = self.frame.accel.closest(&ray, Ignored::one(branch.leaves));
+        match (hit, flight) {
+            (Some(hit), flight) => {
+                branch.throughput *= match flight {
+                    Some(flight) => medium.pass_weight(&flight, hit.t),
+                    None => medium.transmittance(hit.t),
+                };
+                let hit = self.frame.geometry.surface_hit(&hit, branch.direction);
+                self.meet::<DIRECT>(branch, &hit, u)
+            }
+            (None, Some(flight)) if flight.distance.is_finite() => {
+                branch.throughput *= medium.scatter_weight(&flight);
+                self.scatter::<DIRECT>(branch, &flight, u)
+            }
+            (None, flight) => {
+                branch.throughput *= match flight {
+                    Some(flight) => medium.pass_weight(&flight, f32::INFINITY),
+                    None => medium.transmittance(f32::INFINITY),
+                };
+                self.escape(branch);
+                Fate::Ends
+            }
+        }
+    }
+
+    /// The path turns at a particle of the medium.
+    fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, flight: &FreeFlight, u: [f32; 4]) -> Fate {
+        if branch.throughput.max_element() <= 0.0 {
+            return Fate::Ends;
+        }
+        let point = branch.origin + branch.direction * flight.distance;
+        if branch.steps == 1 {
+            self.first = Some(FirstHit {
+                distance: flight.distance,
+                position: point,
+                normal: -branch.direction,
+                albedo: Lanes::ONE,
+            });
+        }
+        let phase = self.frame.medium(branch.medium).phase;
+        let forward = branch.direction;
+        let lit = DIRECT && self.frame.looks_for_lights(branch.medium);
+        if lit {
+            let receiver =
+                Receiver { position: point, normal: None, medium: branch.medium, leaves: u32::MAX };
+            let response = |wi: Vec3| {
+                let angle = one_minus_cos(forward, wi);
+                (Lanes::splat(phase.value(angle)), phase.pdf_w(angle))
+            };
+            let direct = self.direct(&receiver, response, &mut branch.stream);
+            self.radiance += branch.throughput * direct;
+        }
+        let turned = phase.sample(forward, [u[1], u[2]]);
+        branch.throughput *= turned.weight;
+        branch.origin = point;
+        branch.direction = turned.wi;
+        branch.leaves = u32::MAX;
+        let vertex = LitVertex { position: point, pdf_w: turned.pdf_w };
+        branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
+        branch.interacted(u[3])
+    }
+
+    /// The path meets nothing any more: it sees the sky, and the sun's disc on a purely specular chain.
+    fn escape(&mut self, branch: &Branch) {
+        if self.frame.endless[branch.medium.0 as usize] {
+            return;
+        }
+        if branch.medium != MediumId(0) {
+            self.scratch.counters.escaped_inside += 1;
+        }
+        let lights = &self.frame.lights;
+        let weight = branch
+            .arrival
+            .lit
+            .map_or(1.0, |v| crate::light::balance(v.pdf_w, lights.environment.pdf_w(branch.direction)));
+        let mut radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
+        if let Some(sun) = &lights.sun
+            && branch.arrival.specular_from_eye
+        {
+            radiance += sun.radiance(branch.direction, self.wavelengths);
+        }
+        self.radiance += branch.throughput * radiance;
+    }
+
+    /// Remembers the first surface for the picture's extra layers.
+    pub(super) fn remember_first(&mut self, branch: &Branch, hit: &SurfaceHit, albedo: Lanes) {
+        if branch.interactions == 0 && self.first.is_none() {
+            // Index-matched boundaries before it have moved the origin along the eye ray.
+            let distance = (hit.point.position - self.frame.camera.eye()).length();
+            self.first = Some(FirstHit { distance, position: hit.point.position, normal: hit.ns, albedo });
+        }
+    }
+
+    fn cut(&mut self, branch: &Branch) -> Fate {
+        let kept = branch.throughput.max_element() / (branch.index_factor * branch.share);
+        if branch.arrival.specular_from_eye && kept > 0.999 {
+            self.scratch.counters.trapped += 1;
+        } else {
+            self.scratch.counters.cut += 1;
+        }
+        Fate::Ends
+    }
+}
+
+impl Branch {
+    /// Counts an interaction and plays Russian roulette with `u`.
+    pub(super) fn interacted(&mut self, u: f32) -> Fate {
+        self.interactions += 1;
+        let kept = self.throughput.max_element() / (self.index_factor * self.share);
+        let late = if self.interactions >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        let survival = kept.min(1.0) * late;
+        if survival >= 1.0 {
+            return Fate::GoesOn;
+        }
+        // Written so that a throughput that is not a number ends too.
+        if u < survival {
+            self.throughput /= survival;
+            Fate::GoesOn
+        } else {
+            Fate::Ends
+        }
+    }
+}

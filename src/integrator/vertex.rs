@@ -1,0 +1,213 @@
+//! What a path does where it meets a surface.
+
+use glam::Vec3;
+
+use super::direct::Receiver;
+use super::path::{Arrival, Branch, Fate, LitVertex, Sample};
+use crate::geometry::Frame as Basis;
+use crate::light::balance;
+use crate::optics::fresnel;
+use crate::optics::medium::MediumId;
+use crate::optics::refraction::{reflect, refract};
+use crate::sampling::warp;
+use crate::scene::geometry::SurfaceHit;
+use crate::scene::surface::{MediumPair, Surface};
+use crate::spectrum::{LaneCurve, Lanes};
+
+/// Reflected and refracted directions at an interface; no refraction is total reflection.
+struct Directions {
+    reflectance: f32,
+    reflected: Vec3,
+    refracted: Option<Vec3>,
+}
+
+impl Sample<'_> {
+    /// Follows a branch through the surface that it has met.
+    pub(super) fn meet<const DIRECT: bool>(
+        &mut self,
+        branch: &mut Branch,
+        hit: &SurfaceHit,
+        u: [f32; 4],
+    ) -> Fate {
+        let frame = self.frame;
+        match frame.surface(hit.triangle) {
+            Surface::Interface(pair) if pair.matched => self.pass(branch, hit, pair),
+            Surface::Interface(pair) => self.bend(branch, hit, pair, u),
+            Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
+            Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
+            Surface::Emitter { radiance } => {
+                self.arrive(branch, hit, radiance);
+                Fate::Ends
+            }
+        }
+    }
+
+    /// An index-matched boundary: the medium changes and L / n^2 stays.
+    fn pass(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
+        let (incident, beyond) = pair.crossed(hit.from_front);
+        self.check_label(branch, pair, hit);
+        branch.enter(beyond, self.index_factor(incident, beyond));
+        branch.leave(hit, branch.direction);
+        Fate::GoesOn
+    }
+
+    /// A refracting interface: both ways while splits are left, one by Fresnel's reflectance afterwards.
+    fn bend(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair, u: [f32; 4]) -> Fate {
+        let (incident, beyond) = pair.crossed(hit.from_front);
+        self.check_label(branch, pair, hit);
+        self.remember_first(branch, hit, Lanes::ONE);
+        let eta_t_over_i = self.frame.medium(beyond).n / self.frame.medium(incident).n;
+        let ways = directions(-branch.direction, hit, eta_t_over_i);
+        branch.medium = incident;
+        branch.arrival.lit = None;
+        let factor = self.index_factor(incident, beyond);
+        let mut reflected = *branch;
+        reflected.leave(hit, ways.reflected);
+        let Some(direction) = ways.refracted else {
+            *branch = reflected;
+            return branch.interacted(u[3]);
+        };
+        let mut refracted = *branch;
+        refracted.leave(hit, direction);
+        refracted.enter(beyond, factor);
+        if branch.splits_left > 0 {
+            reflected.split_off(ways.reflectance, 0);
+            refracted.split_off(1.0 - ways.reflectance, 1);
+            if reflected.interacted(u[3]) == Fate::GoesOn && ways.reflectance > 0.0 {
+                self.scratch.branches.push(reflected);
+            }
+            *branch = refracted;
+        } else {
+            *branch = if u[1] < ways.reflectance { reflected } else { refracted };
+        }
+        branch.interacted(u[3])
+    }
+
+    fn reflect_diffusely<const DIRECT: bool>(
+        &mut self,
+        branch: &mut Branch,
+        hit: &SurfaceHit,
+        reflectance: &LaneCurve,
+        u: [f32; 4],
+    ) -> Fate {
+        let albedo = reflectance.lanes(self.wavelengths);
+        self.remember_first(branch, hit, albedo);
+        let lit = DIRECT && self.frame.looks_for_lights(branch.medium);
+        if lit {
+            let receiver = Receiver {
+                position: hit.point.position,
+                normal: Some(*hit),
+                medium: branch.medium,
+                leaves: hit.triangle,
+            };
+            let response = |wi: Vec3| {
+                let pdf_w = warp::cosine_hemisphere_pdf_w(wi.dot(hit.ns));
+                (albedo * pdf_w, pdf_w)
+            };
+            let direct = self.direct(&receiver, response, &mut branch.stream);
+            self.radiance += branch.throughput * direct;
+        }
+        let local = warp::cosine_hemisphere([u[1], u[2]]);
+        let mut wi = Basis::around(hit.ns).to_world(local).normalize();
+        let mut vertex =
+            Some(LitVertex { position: hit.point.position, pdf_w: warp::cosine_hemisphere_pdf_w(local.z) });
+        if wi.dot(hit.ng) <= 0.0 {
+            // The part of the lobe that dips under the surface goes around the geometric normal instead; it is found
+            // by chance only, so next-event estimation has no share in it.
+            wi = Basis::around(hit.ng).to_world(local).normalize();
+            vertex = None;
+        }
+        branch.throughput *= albedo;
+        branch.arrival = Arrival { specular_from_eye: false, lit: vertex.filter(|_| lit) };
+        branch.leave(hit, wi);
+        branch.interacted(u[3])
+    }
+
+    fn reflect_on_metal(
+        &mut self,
+        branch: &mut Branch,
+        hit: &SurfaceHit,
+        eta: &LaneCurve,
+        k: &LaneCurve,
+        u: [f32; 4],
+    ) -> Fate {
+        let wo = -branch.direction;
+        let n = self.frame.medium(branch.medium).n;
+        let index = [eta, k].map(|curve| curve.lanes(self.wavelengths) / n);
+        let mut normal = hit.ns;
+        let mut wi = reflect(wo, normal);
+        if wi.dot(hit.ng) <= 0.0 {
+            normal = hit.ng;
+            wi = reflect(wo, normal);
+        }
+        let reflectance = fresnel::conductor(wo.dot(normal), index[0], index[1]);
+        self.remember_first(branch, hit, reflectance);
+        branch.throughput *= reflectance;
+        branch.arrival.lit = None;
+        branch.leave(hit, wi);
+        branch.interacted(u[3])
+    }
+
+    /// The path runs into a light.
+    fn arrive(&mut self, branch: &Branch, hit: &SurfaceHit, radiance: &LaneCurve) {
+        self.remember_first(branch, hit, Lanes::ONE);
+        if !hit.from_front {
+            return;
+        }
+        let weight = match (branch.arrival.lit, &self.frame.lights.area) {
+            (Some(vertex), Some(area)) => {
+                let distance = (hit.point.position - vertex.position).length();
+                balance(vertex.pdf_w, area.pdf_w(hit.triangle, branch.direction, distance))
+            }
+            _ => 1.0,
+        };
+        self.radiance += branch.throughput * radiance.lanes(self.wavelengths) * weight;
+    }
+
+    fn check_label(&mut self, branch: &Branch, pair: &MediumPair, hit: &SurfaceHit) {
+        if pair.crossed(hit.from_front).0 != branch.medium {
+            self.scratch.counters.label_mismatches += 1;
+        }
+    }
+
+    /// (n_a / n_b)^2 on the way from a into b.
+    fn index_factor(&self, a: MediumId, b: MediumId) -> f32 {
+        let ratio = self.frame.medium(a).n / self.frame.medium(b).n;
+        ratio * ratio
+    }
+}
+
+impl Branch {
+    /// Starts again from a surface along `direction`.
+    fn leave(&mut self, hit: &SurfaceHit, direction: Vec3) {
+        self.origin = hit.point.spawn(hit.ng, direction);
+        self.direction = direction;
+        self.leaves = hit.triangle;
+    }
+
+    fn enter(&mut self, medium: MediumId, index_factor: f32) {
+        self.medium = medium;
+        self.throughput *= index_factor;
+        self.index_factor *= index_factor;
+    }
+
+    /// Takes a share of the path with numbers of its own.
+    fn split_off(&mut self, share: f32, branch: u32) {
+        self.throughput *= share;
+        self.share *= share;
+        self.splits_left -= 1;
+        self.stream = self.stream.fork(branch);
+    }
+}
+
+/// Both directions about the shading normal; about the geometric one when either would end up on the wrong side.
+fn directions(wo: Vec3, hit: &SurfaceHit, eta_t_over_i: f32) -> Directions {
+    let about = |normal: Vec3| Directions {
+        reflectance: fresnel::dielectric(wo.dot(normal), eta_t_over_i).reflectance,
+        reflected: reflect(wo, normal),
+        refracted: refract(wo, normal, eta_t_over_i),
+    };
+    let ways = about(hit.ns);
+    let sound = ways.reflected.dot(hit.ng) > 0.0 && ways.refracted.is_none_or(|d| d.dot(hit.ng) < 0.0);
+    if sound { ways } else { about(hit.ng) }
+}
