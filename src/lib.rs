@@ -50,3 +50,5 @@ pub mod light;
 pub mod scene;
 
 pub mod integrator;
+
+pub mod film;

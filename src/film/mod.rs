@@ -1,0 +1,42 @@
+//! From samples to image files.
+//!
+//! ```text
+//! filter -> (a path through the scene) -> accumulate -> tiles -> frame image -> error estimate
+//!                                                                            -> OpenEXR (what was measured)
+//!                                                                            -> tone map -> PNG (to look at)
+//! ```
+//!
+//! * [`filter`] places the samples of a pixel so that each counts with weight one in its own pixel.
+//! * [`accumulate`] takes means in double precision and the variance of each mean from independent replicates.
+//! * [`frame_image`] cuts a frame into tiles and puts it together again; the order of the tiles has no influence.
+//! * [`estimate`] says how far a frame is from the converged picture, with a confidence interval.
+//! * [`exr`] and [`png`] encode; [`tonemap`] says how radiance becomes what a screen shows.
+//! * [`write`](mod@write) makes files appear whole or not at all.
+//!
+//! A file's bytes depend on its pixels and metadata alone, never on threads, host or time. Radiance is linear Rec. 709
+//! RGB, and components may be negative: water is more saturated than a screen.
+
+pub mod accumulate;
+pub mod error;
+pub mod estimate;
+pub mod exr;
+mod exr_channels;
+mod exr_header;
+pub mod filter;
+pub mod frame_image;
+pub mod luminance;
+pub mod metadata;
+pub mod png;
+#[cfg(test)]
+mod splitmix;
+pub mod tonemap;
+pub mod write;
+mod write_frame;
+
+pub use accumulate::{FAR_DEPTH, FilmSample, Pixel, PixelAccumulator, REPLICATES};
+pub use error::FilmError;
+pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, estimate_error};
+pub use filter::Filter;
+pub use frame_image::{FrameImage, Tile, TileRect, tiles};
+pub use metadata::ImageMetadata;
+pub use write_frame::write_frame;

@@ -1,0 +1,40 @@
+//! A frame's files: the OpenEXR one and, on request, a PNG to look at.
+
+use std::path::Path;
+
+use super::error::FilmError;
+use super::exr::encode_exr;
+use super::frame_image::FrameImage;
+use super::metadata::ImageMetadata;
+use super::png::encode_png;
+use super::write::StagedFile;
+use crate::scene::description::Aov;
+
+/// Writes a frame; `exposure` of the PNG is in stops.
+///
+/// Both files are complete on the disk before either has its name, and the OpenEXR file gets its name last: where it
+/// is, the frame is done.
+///
+/// # Errors
+/// Any [`FilmError`]. No temporary file is left; a PNG of the frame may be there if only the OpenEXR file could not
+/// take its name.
+pub fn write_frame(
+    image: &FrameImage,
+    metadata: &ImageMetadata,
+    exr_path: &Path,
+    png_path: Option<&Path>,
+    aovs: &[Aov],
+    exposure: f32,
+) -> Result<(), FilmError> {
+    let exr = StagedFile::new(exr_path, &encode_exr(image, metadata, aovs, exr_path)?)?;
+    if let Some(path) = png_path {
+        let bytes = encode_png(image, exposure).map_err(|error| FilmError::CannotEncode {
+            path: path.to_path_buf(),
+            width: image.width,
+            height: image.height,
+            reason: error.to_string(),
+        })?;
+        StagedFile::new(path, &bytes)?.commit()?;
+    }
+    exr.commit()
+}
