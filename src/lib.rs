@@ -52,3 +52,5 @@ pub mod scene;
 pub mod integrator;
 
 pub mod film;
+
+pub mod driver;

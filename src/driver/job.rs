@@ -1,0 +1,189 @@
+//! Opens what the user points at: a scene file, a folder with one, or a folder of frames.
+
+use std::path::{Component, Path, PathBuf};
+
+use glam::DVec3;
+
+use super::error::RenderError;
+use crate::mesh::{self, RawMesh};
+use crate::scene::FrameError;
+use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
+use crate::scene::domain::detect_box;
+use crate::scene::world::World;
+use crate::sequence::{FrameFile, FrameNumber, discover, frame_path, output_path};
+
+/// Name of the scene file in a folder.
+const SCENE_FILE: &str = "scene.toml";
+
+/// A scene and its frames.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What all frames share.
+    pub world: World,
+    /// The frames in order; empty for a still.
+    pub files: Vec<FrameFile>,
+    /// The scene file that was written because the folder had none.
+    pub written_scene: Option<PathBuf>,
+    /// Name of the folder or scene, which names the output.
+    pub name: String,
+}
+
+/// One frame to be rendered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameTask {
+    /// Its number.
+    pub number: FrameNumber,
+    /// Its mesh; `None` for a still without `[frames]`.
+    pub file: Option<PathBuf>,
+}
+
+impl Job {
+    /// Opens a scene file or a folder.
+    ///
+    /// A folder without `scene.toml` gets one beside its output (`out/<folder>/scene.toml`), once.
+    ///
+    /// # Errors
+    /// When nothing is there, or the scene file is wrong, or no frames are found.
+    pub fn open(path: &Path) -> Result<Self, RenderError> {
+        let (file, written_scene, name) = scene_file(path)?;
+        let description = SceneDescription::from_file(&file)?;
+        let files = match &description.frames {
+            Some(frames) => discover(&description.directory, &frames.path)?,
+            None => Vec::new(),
+        };
+        let placement = match &description.camera.placement {
+            Some(placement) => placement.clone(),
+            None => framed(&description, &files)?,
+        };
+        Ok(Self { world: World::new(description, placement)?, files, written_scene, name })
+    }
+
+    /// Every frame, in order.
+    pub fn tasks(&self) -> Vec<FrameTask> {
+        if self.world.frames().is_none() {
+            let first = FrameNumber::from_integer(1).unwrap_or_default();
+            return vec![FrameTask { number: first, file: None }];
+        }
+        self.files.iter().map(|f| FrameTask { number: f.number, file: Some(f.path.clone()) }).collect()
+    }
+
+    /// The pattern of the pictures' names, relative to the current directory.
+    pub fn output_pattern(&self) -> String {
+        self.world
+            .description
+            .output
+            .path
+            .clone()
+            .unwrap_or_else(|| format!("out/{}/frame_####.exr", self.name))
+    }
+
+    /// Where a frame's picture goes.
+    pub fn output(&self, pattern: &str, number: FrameNumber) -> PathBuf {
+        PathBuf::from(output_path(pattern, number))
+    }
+}
+
+/// The scene file of what the user gave, whether it was written just now, and the name of the whole.
+fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderError> {
+    if path.is_file() {
+        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let is_plain = path.file_name().is_some_and(|n| n == SCENE_FILE);
+        let name = if is_plain { folder_name(path.parent().unwrap_or(path)) } else { stem };
+        return Ok((path.into(), None, name));
+    }
+    if !path.is_dir() {
+        return Err(RenderError::NotFound { path: path.into() });
+    }
+    let name = folder_name(path);
+    let own = path.join(SCENE_FILE);
+    if own.is_file() {
+        return Ok((own, None, name));
+    }
+    let beside = Path::new("out").join(&name).join(SCENE_FILE);
+    if beside.is_file() {
+        return Ok((beside, None, name));
+    }
+    write_default_scene(path, &beside)?;
+    Ok((beside.clone(), Some(beside), name))
+}
+
+fn folder_name(folder: &Path) -> String {
+    let absolute = folder.canonicalize().unwrap_or_else(|_| folder.into());
+    absolute.file_name().map_or_else(|| "scene".into(), |n| n.to_string_lossy().into_owned())
+}
+
+/// Writes the scene of a folder that has none, from its first frame.
+fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
+    let frames = discover(folder, "")?;
+    let first = mesh::read(&frames[0].path).map_err(FrameError::from)?;
+    let mut labels: Vec<i32> = match &first.interfaces {
+        Some(interfaces) => interfaces.iter().flat_map(|i| [i.front.0, i.back.0]).collect(),
+        None => vec![1],
+    };
+    labels.sort_unstable();
+    labels.dedup();
+    let target = file.parent().unwrap_or(Path::new("."));
+    let text = default_scene(&relative_path(target, folder), bounds_of(&first), &labels, detect_box(&first));
+    let write = || {
+        std::fs::create_dir_all(target)?;
+        let mut temporary = tempfile::NamedTempFile::new_in(target)?;
+        std::io::Write::write_all(&mut temporary, text.as_bytes())?;
+        temporary.as_file().sync_all()?;
+        temporary.persist(file).map_err(|e| e.error)?;
+        Ok(())
+    };
+    write().map_err(|source| RenderError::CannotWrite { path: file.into(), source })
+}
+
+/// `to` as seen from the folder `from`, both relative to the current directory; absolute when there is no way.
+fn relative_path(from: &Path, to: &Path) -> String {
+    let here = std::env::current_dir().unwrap_or_default();
+    let from: Vec<Component> = Vec::from_iter(from.components());
+    let from: PathBuf = here.join(PathBuf::from_iter(from));
+    let to = to.canonicalize().unwrap_or_else(|_| here.join(to));
+    let from = normalised(&from);
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n(Component::ParentDir, from.components().count() - shared);
+    let relative: PathBuf = up.chain(to.components().skip(shared)).collect();
+    relative.to_string_lossy().into_owned()
+}
+
+/// Resolves what exists of a path; a folder that does not exist yet keeps its name.
+fn normalised(path: &Path) -> PathBuf {
+    match (path.canonicalize(), path.parent(), path.file_name()) {
+        (Ok(found), ..) => found,
+        (Err(_), Some(parent), Some(name)) => normalised(parent).join(name),
+        _ => path.into(),
+    }
+}
+
+/// A camera on the bounds of the lowest-numbered frame, or of the surfaces of a still.
+fn framed(description: &SceneDescription, files: &[FrameFile]) -> Result<Placement, RenderError> {
+    let bounds = match (files.first(), &description.frames) {
+        (Some(first), Some(frames)) => {
+            let (min, max) = bounds_of(&mesh::read(&first.path).map_err(FrameError::from)?);
+            (min * frames.scale, max * frames.scale)
+        }
+        _ => surfaces_bounds(description)?,
+    };
+    let camera = &description.camera;
+    Ok(automatic_placement(bounds, camera.up, camera.fov, camera.resolution))
+}
+
+fn surfaces_bounds(description: &SceneDescription) -> Result<(DVec3, DVec3), RenderError> {
+    let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for surface in &description.surfaces {
+        let number = FrameNumber::from_integer(1).unwrap_or_default();
+        let path = description.directory.join(frame_path(&surface.mesh, number)?);
+        let (min, max) = bounds_of(&mesh::read(&path).map_err(FrameError::from)?);
+        let placed = |p: DVec3| p * surface.scale + surface.translate;
+        bounds = (bounds.0.min(placed(min)), bounds.1.max(placed(max)));
+    }
+    Ok(bounds)
+}
+
+fn bounds_of(mesh: &RawMesh) -> (DVec3, DVec3) {
+    mesh.positions
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)))
+}

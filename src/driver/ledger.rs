@@ -1,0 +1,151 @@
+//! The ledger: one JSON line a frame, `ledger.jsonl` beside the pictures.
+//!
+//! It holds what the pictures must not: run times, rays, and how often something rare happened.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::error::RenderError;
+use crate::film::ErrorEstimate;
+use crate::integrator::Counters;
+
+/// What became of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// The picture is there.
+    Complete,
+    /// There is no picture.
+    Failed,
+}
+
+/// A line of the ledger.
+#[derive(Clone, Debug, Serialize)]
+pub struct FrameRecord {
+    /// Frame number as it is in the file's name.
+    pub frame: String,
+    /// What became of it.
+    pub status: Status,
+    /// Why there is no picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// The frame's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// The picture.
+    pub output: PathBuf,
+    /// Triangles, surfaces and the extended sea included.
+    pub triangles: usize,
+    /// Triangles of the frame's mesh by "front|back" labels.
+    pub interfaces: BTreeMap<String, usize>,
+    /// Bytes of the hierarchy.
+    pub accel_bytes: usize,
+    /// True when the hierarchy of the frame before was refitted.
+    pub refitted: bool,
+    /// Reading the mesh.
+    pub read_seconds: f64,
+    /// Checking it, stitching, normals, hierarchy.
+    pub build_seconds: f64,
+    /// Light transport.
+    pub render_seconds: f64,
+    /// Encoding and writing.
+    pub write_seconds: f64,
+    /// Samples over all pixels.
+    pub samples: u64,
+    /// Estimated relative error; `None` with fewer than two replicates.
+    pub relative_error: Option<RelativeError>,
+    /// Rays and rare events.
+    #[serde(flatten)]
+    pub counters: Counters,
+    /// Light that the picture lacks.
+    pub left_out: Vec<String>,
+    /// What the user should look at.
+    pub warnings: Vec<String>,
+}
+
+/// Estimate and confidence interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RelativeError {
+    /// Root of the mean relative variance.
+    pub estimate: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Its confidence.
+    pub confidence: f64,
+}
+
+impl From<ErrorEstimate> for RelativeError {
+    fn from(e: ErrorEstimate) -> Self {
+        Self { estimate: e.relative, low: e.low, high: e.high, confidence: e.confidence }
+    }
+}
+
+impl FrameRecord {
+    /// A frame of which nothing is known yet.
+    pub fn failed(frame: String, file: Option<PathBuf>, output: PathBuf) -> Self {
+        Self {
+            frame,
+            status: Status::Failed,
+            error: None,
+            file,
+            output,
+            triangles: 0,
+            interfaces: BTreeMap::new(),
+            accel_bytes: 0,
+            refitted: false,
+            read_seconds: 0.0,
+            build_seconds: 0.0,
+            render_seconds: 0.0,
+            write_seconds: 0.0,
+            samples: 0,
+            relative_error: None,
+            counters: Counters::default(),
+            left_out: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Reading, building, rendering and writing.
+    pub fn seconds(&self) -> f64 {
+        self.read_seconds + self.build_seconds + self.render_seconds + self.write_seconds
+    }
+}
+
+/// Appends to the ledger of a folder.
+#[derive(Clone, Debug)]
+pub struct Ledger {
+    path: PathBuf,
+}
+
+impl Ledger {
+    /// The ledger beside a picture.
+    pub fn beside(picture: &Path) -> Self {
+        Self { path: picture.with_file_name("ledger.jsonl") }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends a line in one write.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn append(&self, record: &FrameRecord) -> Result<(), RenderError> {
+        let write = || {
+            let mut line = serde_json::to_vec(record)?;
+            line.push(b'\n');
+            if let Some(folder) = self.path.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            std::fs::OpenOptions::new().create(true).append(true).open(&self.path)?.write_all(&line)
+        };
+        write().map_err(|source| RenderError::CannotWrite { path: self.path.clone(), source })
+    }
+}

@@ -1,0 +1,93 @@
+//! The pixels of one frame, tile by tile over all threads.
+//!
+//! A sample depends on its pixel and index alone and a tile's pixels are its own, so neither the number of threads nor
+//! the order of the tiles changes a bit.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
+use crate::integrator::{Counters, EyeSample, Integrator, Scratch};
+use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
+use crate::scene::frame::Frame;
+use crate::spectrum::{Wavelengths, film_rgb};
+
+/// Edge of a tile in pixels.
+const TILE_SIZE: u32 = 16;
+
+/// How a frame's pixels are sampled.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// Radiance of a sample.
+    pub integrator: Integrator,
+    /// Where samples lie in a pixel.
+    pub filter: Filter,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// What samples depend on besides pixel and index.
+    pub seed: SampleSeed,
+}
+
+/// Renders all pixels; `progress` hears of the tiles done and their number.
+pub fn render_pixels(
+    frame: &Frame,
+    sampling: &Sampling,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> (FrameImage, Counters) {
+    let [width, height] = frame.camera.resolution();
+    let rects = tiles(width, height, TILE_SIZE);
+    let done = AtomicUsize::new(0);
+    let rendered: Vec<(Tile, Counters)> = rects
+        .par_iter()
+        .map_init(Scratch::default, |scratch, rect| {
+            scratch.counters = Counters::default();
+            let tile = render_tile(frame, sampling, scratch, *rect);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, rects.len());
+            (tile, scratch.counters)
+        })
+        .collect();
+    let mut counters = Counters::default();
+    let tiles = rendered.into_iter().map(|(tile, events)| {
+        counters += events;
+        tile
+    });
+    let image = FrameImage::from_tiles(width, height, tiles);
+    counters.non_finite = image.rejected();
+    (image, counters)
+}
+
+fn render_tile(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, rect: TileRect) -> Tile {
+    let pixels = rect.pixels().map(|(x, y)| render_pixel(frame, sampling, scratch, x, y)).collect();
+    Tile { rect, pixels }
+}
+
+fn render_pixel(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, x: u32, y: u32) -> Pixel {
+    let mut pixel = PixelAccumulator::new();
+    for index in 0..sampling.samples {
+        let mut stream = SampleStream::new(sampling.seed, x, y, index);
+        let [u, v, w, _] = stream.next4();
+        let offset = sampling.filter.sample([u, v]);
+        let wavelengths = Wavelengths::for_mode(frame.mode, w);
+        let point = [x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y];
+        let sample = sampling.integrator.sample(frame, scratch, point, &wavelengths, stream);
+        pixel.add((index % REPLICATES) as usize, &film_sample(frame, &sample, &wavelengths));
+    }
+    pixel.finish()
+}
+
+fn film_sample(frame: &Frame, sample: &EyeSample, wavelengths: &Wavelengths) -> FilmSample {
+    let radiance = film_rgb(frame.mode, wavelengths, sample.radiance);
+    match &sample.first {
+        None => FilmSample::of_sky(radiance),
+        Some(first) => FilmSample {
+            radiance,
+            alpha: 1.0,
+            albedo: frame.colour_of(first.albedo, wavelengths),
+            normal: first.normal,
+            position: (frame.origin + first.position.as_dvec3()).as_vec3(),
+            depth: frame.camera.depth(first.position),
+            hit: true,
+        },
+    }
+}
