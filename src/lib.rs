@@ -54,3 +54,6 @@ pub mod integrator;
 pub mod film;
 
 pub mod driver;
+
+#[cfg(feature = "cli")]
+pub mod cli;

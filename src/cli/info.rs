@@ -1,0 +1,135 @@
+//! `floe info`
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::exit::Exit;
+use crate::driver::job::FrameTask;
+use crate::driver::{Job, RenderError};
+use crate::mesh;
+use crate::scene::FrameError;
+use crate::scene::assembly::{Assembled, FrameMesh};
+use crate::scene::world::World;
+use crate::sequence::{FrameSelection, format_numbers, gaps};
+use crate::spectrum::LaneMode;
+
+#[derive(Debug, Args)]
+pub struct InfoArguments {
+    /// A scene file, or a folder with scene.toml or with frames
+    scene: PathBuf,
+    /// The frame to look into, or several [default: the first]
+    #[arg(long, value_name = "RANGE", value_parser = FrameSelection::parse, allow_hyphen_values = true)]
+    frames: Option<FrameSelection>,
+}
+
+/// Prints the scene, and what a frame of it needs.
+pub fn run(arguments: &InfoArguments) -> Exit {
+    match report(arguments) {
+        Ok(text) => {
+            print!("{text}");
+            Exit::Complete
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            Exit::from(&error)
+        }
+    }
+}
+
+fn report(arguments: &InfoArguments) -> Result<String, RenderError> {
+    let job = Job::open(&arguments.scene)?;
+    let mut text = describe_job(&job);
+    let tasks = job.tasks();
+    let chosen: Vec<&FrameTask> = match &arguments.frames {
+        Some(selection) => tasks.iter().filter(|t| selection.contains(t.number)).collect(),
+        None => tasks.iter().take(1).collect(),
+    };
+    let mut previous = None;
+    for task in chosen {
+        let mesh = match &task.file {
+            Some(path) => {
+                Some(FrameMesh { path: path.clone(), mesh: mesh::read(path).map_err(FrameError::from)? })
+            }
+            None => None,
+        };
+        let assembled = job.world.assemble(task.number, mesh, previous.take())?;
+        text += &describe_frame(&task.number.to_string(), &assembled);
+        previous = Some(assembled.frame);
+    }
+    Ok(text)
+}
+
+fn describe_job(job: &Job) -> String {
+    let world = &job.world;
+    let mut text = format!("scene     {}\n", world.description.file.display());
+    if let Some(scene) = &job.written_scene {
+        let _ = writeln!(text, "          (written just now: {})", scene.display());
+    }
+    if job.files.is_empty() {
+        text += "frames    one still\n";
+    } else {
+        let numbers: Vec<_> = job.files.iter().map(|f| f.number).collect();
+        let _ = writeln!(text, "frames    {} ({})", numbers.len(), format_numbers(&numbers));
+        let missing = gaps(&job.files);
+        if !missing.is_empty() {
+            let list: Vec<String> = missing.iter().map(ToString::to_string).collect();
+            let _ = writeln!(text, "missing   {}", list.join(", "));
+        }
+    }
+    let [width, height] = world.camera.resolution();
+    let render = &world.description.render;
+    let _ =
+        writeln!(text, "picture   {width} x {height}, {} samples, {}", render.samples, job.output_pattern());
+    let lanes = match world.mode {
+        LaneMode::Rgb => "linear RGB",
+        LaneMode::Spectral => "four wavelengths of 380 to 780 nm",
+    };
+    let _ = writeln!(text, "lanes     {lanes}");
+    text + &describe_media(world)
+}
+
+fn describe_media(world: &World) -> String {
+    let mut text = String::from("media\n");
+    for medium in &world.media {
+        let labels: Vec<String> = world
+            .description
+            .regions
+            .iter()
+            .filter(|(_, name)| **name == medium.name)
+            .map(|(region, _)| region.0.to_string())
+            .collect();
+        let labels =
+            if labels.is_empty() { String::new() } else { format!(" (label {})", labels.join(", ")) };
+        let _ = writeln!(
+            text,
+            "  {}{labels}: index {:.4}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {:.3}",
+            medium.name,
+            medium.n,
+            medium.sigma_a.maximum(),
+            medium.sigma_s.maximum(),
+            medium.phase.mean_cosine()
+        );
+    }
+    text
+}
+
+fn describe_frame(number: &str, assembled: &Assembled) -> String {
+    let frame = &assembled.frame;
+    let mut text = format!("frame {number}\n");
+    let _ = writeln!(text, "  triangles {}", frame.geometry.triangles.len());
+    for (interface, count) in &assembled.interfaces {
+        let _ = writeln!(text, "    between {} and {}: {count}", interface.front.0, interface.back.0);
+    }
+    let _ = writeln!(text, "  camera in {}", frame.medium(frame.camera_medium).name);
+    let hierarchy = if assembled.refitted { "refitted" } else { "built" };
+    let _ = writeln!(text, "  hierarchy {hierarchy}, {} bytes", frame.accel.bytes());
+    for line in frame.needs.lines() {
+        let _ = writeln!(text, "  {line}");
+    }
+    for warning in &assembled.warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    text
+}

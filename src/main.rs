@@ -1,0 +1,5 @@
+//! The `floe` command.
+
+fn main() -> std::process::ExitCode {
+    floe::cli::run()
+}
