@@ -1,16 +1,27 @@
-//! Builds the tree with obvhs and lays it out for traversal.
+//! Builds a binary tree with obvhs and collapses it to four children a node.
 
 use glam::Vec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use super::{Accel, Child, MAX_DEPTH, Node};
+use super::{Accel, Child, Leaf, MAX_DEPTH, Node};
 use crate::geometry::Bounds;
-use crate::geometry::triangle::triangle_bounds;
+use crate::geometry::triangle::{TrianglePack, triangle_bounds};
 
 /// Triangles in a leaf, at most.
 const LEAF_SIZE: usize = 4;
+
+/// Parts of the tree that reinsertion tries to place better.
+const REINSERTION_RATIO: f32 = 0.02;
+
+/// A place for a subtree: the node and the lane that it hangs from.
+struct Slot {
+    node: usize,
+    lane: usize,
+}
 
 impl Accel {
     /// Builds the hierarchy over `triangles` (index triples into `positions`, all finite and in range).
@@ -19,92 +30,100 @@ impl Accel {
             return Self::default();
         }
         let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect();
-        let mut accel = Self::from_bvh2(&corners, &bvh2_of(&corners));
-        if accel.depth() > MAX_DEPTH {
-            accel = Self::balanced(&corners, std::mem::take(&mut accel.ids));
-        }
-        accel
+        let binary = bvh2_of(&corners);
+        let accel = Self::collapsed(&corners, &binary);
+        if accel.depth() <= MAX_DEPTH { accel } else { Self::balanced(&corners, &binary.primitive_indices) }
     }
 
-    /// Copies the tree of obvhs, node pairs becoming single nodes and single-triangle subtrees leaves of a run.
-    fn from_bvh2(corners: &[[Vec3; 3]], bvh: &Bvh2) -> Self {
-        let mut accel = Self { bounds: bounds_of(&bvh.nodes[0].aabb), ..Self::default() };
-        accel.nodes.reserve(bvh.nodes.len() / 2 + 1);
-        if bvh.nodes[0].is_leaf() {
-            let leaf = accel.leaf(corners, &bvh.primitive_indices);
-            accel.nodes.push(Node { children: [leaf, absent()] });
-            return accel;
-        }
-        accel.nodes.push(Node { children: [absent(), absent()] });
-        let mut open = vec![(0_usize, 0_usize)];
-        while let Some((source, target)) = open.pop() {
-            let first = bvh.nodes[source].first_index as usize;
-            for side in 0..2 {
-                let node = &bvh.nodes[first + side];
-                accel.nodes[target].children[side] = if node.is_leaf() {
-                    let start = node.first_index as usize;
-                    accel.leaf(corners, &bvh.primitive_indices[start..start + node.prim_count as usize])
+    fn collapsed(corners: &[[Vec3; 3]], binary: &Bvh2) -> Self {
+        let mut accel = Self { triangles: corners.len(), ..Self::default() };
+        accel.nodes.push(Node::EMPTY);
+        let root = if binary.nodes[0].is_leaf() { vec![0] } else { children_of(binary, 0) };
+        let mut open = vec![(root, 0)];
+        while let Some((members, node)) = open.pop() {
+            for (lane, &member) in members.iter().enumerate() {
+                let source = &binary.nodes[member];
+                let slot = Slot { node, lane };
+                if source.is_leaf() {
+                    let first = source.first_index as usize;
+                    let ids = &binary.primitive_indices[first..first + source.prim_count as usize];
+                    accel.hang_leaf(&slot, corners, ids);
                 } else {
                     let index = accel.nodes.len();
-                    accel.nodes.push(Node { children: [absent(), absent()] });
-                    open.push((first + side, index));
-                    Child { bounds: bounds_of(&node.aabb), first: index as u32, count: 0 }
-                };
+                    accel.nodes.push(Node::EMPTY);
+                    accel.hang(&slot, bounds_of(&source.aabb), Child::node(index));
+                    open.push((children_of(binary, member), index));
+                }
             }
         }
+        accel.bounds = accel.nodes[0].boxes.union();
         accel
     }
 
-    /// A tree that halves the given order until a leaf's size is reached: depth log2(n) whatever the geometry.
-    fn balanced(corners: &[[Vec3; 3]], order: Vec<u32>) -> Self {
-        let mut accel = Self::default();
-        accel.nodes.push(Node { children: [absent(), absent()] });
-        let whole = accel.halve(corners, &order);
-        accel.bounds = whole.bounds;
-        accel.nodes[0] = Node { children: [whole, absent()] };
+    /// A tree that quarters the given order until a leaf's size is reached: depth log4(n) whatever the geometry.
+    fn balanced(corners: &[[Vec3; 3]], order: &[u32]) -> Self {
+        let mut accel = Self { triangles: corners.len(), ..Self::default() };
+        accel.nodes.push(Node::EMPTY);
+        let mut open = vec![(order, 0)];
+        while let Some((order, node)) = open.pop() {
+            let share = order.len().div_ceil(4).next_multiple_of(LEAF_SIZE);
+            for (lane, part) in order.chunks(share).enumerate() {
+                let slot = Slot { node, lane };
+                if part.len() <= LEAF_SIZE {
+                    accel.hang_leaf(&slot, corners, part);
+                } else {
+                    let index = accel.nodes.len();
+                    accel.nodes.push(Node::EMPTY);
+                    accel.hang(&slot, around(corners, part), Child::node(index));
+                    open.push((part, index));
+                }
+            }
+        }
+        accel.bounds = accel.nodes[0].boxes.union();
         accel
     }
 
-    fn halve(&mut self, corners: &[[Vec3; 3]], order: &[u32]) -> Child {
-        if order.len() <= LEAF_SIZE {
-            return self.leaf(corners, order);
-        }
-        let index = self.nodes.len();
-        self.nodes.push(Node { children: [absent(), absent()] });
-        let (left, right) = order.split_at(order.len() / 2);
-        let children = [self.halve(corners, left), self.halve(corners, right)];
-        self.nodes[index] = Node { children };
-        Child { bounds: children[0].bounds.union(children[1].bounds), first: index as u32, count: 0 }
+    fn hang(&mut self, slot: &Slot, bounds: Bounds, child: Child) {
+        let node = &mut self.nodes[slot.node];
+        node.boxes.set(slot.lane, bounds);
+        node.children[slot.lane] = child;
     }
 
-    fn leaf(&mut self, corners: &[[Vec3; 3]], ids: &[u32]) -> Child {
-        let first = self.ids.len() as u32;
-        let mut bounds = Bounds::EMPTY;
-        for &id in ids {
-            let v = corners[id as usize];
-            bounds = bounds.union(triangle_bounds(&v));
-            self.vertices.push(v);
-            self.ids.push(id);
+    fn hang_leaf(&mut self, slot: &Slot, corners: &[[Vec3; 3]], ids: &[u32]) {
+        let mut leaf = Leaf { pack: TrianglePack::EMPTY, ids: [Leaf::NO_TRIANGLE; 4] };
+        for (lane, &id) in ids.iter().enumerate() {
+            leaf.pack.set(lane, &corners[id as usize]);
+            leaf.ids[lane] = id;
         }
-        Child { bounds, first, count: ids.len() as u32 }
+        let index = self.leaves.len();
+        self.leaves.push(leaf);
+        self.hang(slot, around(corners, ids), Child::leaf(index));
     }
 
     /// Number of nodes on the longest way down.
     pub(super) fn depth(&self) -> usize {
-        let mut deepest = 0;
-        let mut open = vec![(0_usize, 1_usize)];
-        while let Some((index, depth)) = open.pop() {
-            deepest = deepest.max(depth);
-            open.extend(
-                self.nodes[index]
-                    .children
-                    .iter()
-                    .filter(|c| c.count == 0)
-                    .map(|c| (c.first as usize, depth + 1)),
-            );
+        let mut depths = vec![1; self.nodes.len()];
+        for index in 0..self.nodes.len() {
+            for node in self.nodes[index].children.iter().filter_map(|c| c.as_node()) {
+                depths[node] = depths[index] + 1;
+            }
         }
-        deepest
+        depths.into_iter().max().unwrap_or(0)
     }
+}
+
+/// Up to four descendants that take the place of a node's two children: the largest are opened first.
+fn children_of(binary: &Bvh2, node: usize) -> Vec<usize> {
+    let pair = |node: usize| [0, 1].map(|side| binary.nodes[node].first_index as usize + side);
+    let mut members = Vec::from(pair(node));
+    while members.len() < 4 {
+        let area = |m: usize| binary.nodes[m].aabb.half_area();
+        let inner = (0..members.len()).filter(|&i| !binary.nodes[members[i]].is_leaf());
+        let Some(largest) = inner.max_by(|&a, &b| area(members[a]).total_cmp(&area(members[b]))) else { break };
+        let opened = members.swap_remove(largest);
+        members.extend(pair(opened));
+    }
+    members
 }
 
 fn bvh2_of(corners: &[[Vec3; 3]]) -> Bvh2 {
@@ -115,20 +134,16 @@ fn bvh2_of(corners: &[[Vec3; 3]]) -> Bvh2 {
             Aabb::new(b.min.into(), b.max.into())
         })
         .collect();
-    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        &boxes,
-        (0..boxes.len() as u32).collect(),
-        SortPrecision::U64,
-        1,
-    );
-    obvhs::bvh2::reinsertion::ReinsertionOptimizer::default().run(&mut bvh, 0.02, None);
-    obvhs::bvh2::leaf_collapser::collapse(&mut bvh, LEAF_SIZE as u32, 1.0);
+    let ids = (0..boxes.len() as u32).collect();
+    let builder = PlocBuilder::with_capacity(boxes.len());
+    let mut bvh = { builder }.build(PlocSearchDistance::Medium, &boxes, ids, SortPrecision::U64, 1);
+    ReinsertionOptimizer::default().run(&mut bvh, REINSERTION_RATIO, None);
+    collapse(&mut bvh, LEAF_SIZE as u32, 1.0);
     bvh
 }
 
-fn absent() -> Child {
-    Child { bounds: Bounds::EMPTY, first: 0, count: Child::ABSENT }
+fn around(corners: &[[Vec3; 3]], ids: &[u32]) -> Bounds {
+    ids.iter().fold(Bounds::EMPTY, |all, &id| all.union(triangle_bounds(&corners[id as usize])))
 }
 
 fn bounds_of(aabb: &Aabb) -> Bounds {

@@ -10,10 +10,12 @@ mod refit;
 mod traverse;
 mod validate;
 
+pub use traverse::Ignored;
+
 use glam::Vec3;
 
 use crate::geometry::Bounds;
-pub use traverse::Ignored;
+use crate::geometry::triangle::{BoundsPack, TrianglePack};
 
 /// Index of a triangle in the order it was given in.
 pub type TriangleId = u32;
@@ -31,51 +33,80 @@ pub struct Hit {
     pub from_front: bool,
 }
 
-/// A bounding volume hierarchy of two children a node.
-///
-/// A node is a cache line: both children's boxes and what they are. The triangles lie in the order of the leaves,
-/// each with its three vertices, so a leaf is read in one run.
+/// A bounding volume hierarchy of four children a node and four triangles a leaf.
 #[derive(Clone, Debug, Default)]
 pub struct Accel {
+    /// Children stand after their parents; the root is the first.
     nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
     bounds: Bounds,
-    vertices: Vec<[Vec3; 3]>,
-    ids: Vec<TriangleId>,
+    triangles: usize,
 }
 
-/// Two boxes and what is in them.
+/// The boxes of four children and where they are: two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct Node {
-    children: [Child; 2],
+    boxes: BoundsPack,
+    children: [Child; 4],
 }
 
-/// A box and the node or the run of triangles inside.
+/// A node, a leaf, or nothing, in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Child(u32);
+
+/// Four triangles and their indices; unused lanes have [`Leaf::NO_TRIANGLE`].
 #[derive(Clone, Copy, Debug)]
-struct Child {
-    bounds: Bounds,
-    /// Index of a node (`count` 0) or of the first triangle.
-    first: u32,
-    /// Number of triangles; 0 for a node; [`Child::ABSENT`] for nothing.
-    count: u32,
+#[repr(C, align(32))]
+struct Leaf {
+    pack: TrianglePack,
+    ids: [TriangleId; 4],
+}
+
+impl Leaf {
+    const NO_TRIANGLE: TriangleId = TriangleId::MAX;
+}
+
+impl Node {
+    const EMPTY: Self = Self { boxes: BoundsPack::EMPTY, children: [Child::NOTHING; 4] };
 }
 
 impl Child {
-    const ABSENT: u32 = u32::MAX;
+    const LEAF: u32 = 1 << 31;
+    /// The box of nothing is empty, so that no ray ever gets there.
+    const NOTHING: Self = Self(u32::MAX);
+
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    fn leaf(index: usize) -> Self {
+        Self(index as u32 | Self::LEAF)
+    }
+
+    /// The index of a leaf.
+    fn as_leaf(self) -> Option<usize> {
+        (self != Self::NOTHING && self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
+    }
+
+    /// The index of a node.
+    fn as_node(self) -> Option<usize> {
+        (self.0 & Self::LEAF == 0).then_some(self.0 as usize)
+    }
 }
 
 /// Deepest tree that is ever traversed; the builder falls back to a balanced tree beyond it.
-const MAX_DEPTH: usize = 64;
+const MAX_DEPTH: usize = 42;
 
 impl Accel {
     /// Number of triangles.
     pub fn len(&self) -> usize {
-        self.ids.len()
+        self.triangles
     }
 
     /// True without triangles: every ray misses.
     pub fn is_empty(&self) -> bool {
-        self.ids.is_empty()
+        self.triangles == 0
     }
 
     /// The box around everything.
@@ -85,6 +116,6 @@ impl Accel {
 
     /// Bytes that the hierarchy occupies.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.vertices) + size_of_val(&*self.ids)
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
     }
 }

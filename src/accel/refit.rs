@@ -4,36 +4,38 @@ use glam::Vec3;
 
 use super::{Accel, Child};
 use crate::geometry::Bounds;
-use crate::geometry::triangle::triangle_bounds;
 
 impl Accel {
     /// Moves the vertices; `triangles` are those that the hierarchy was built from.
     pub fn refit(&mut self, positions: &[Vec3], triangles: &[[u32; 3]]) {
-        debug_assert_eq!(triangles.len(), self.ids.len());
-        for (v, &id) in self.vertices.iter_mut().zip(&self.ids) {
-            *v = triangles[id as usize].map(|i| positions[i as usize]);
+        debug_assert_eq!(triangles.len(), self.triangles);
+        for leaf in &mut self.leaves {
+            for (lane, id) in leaf.ids.into_iter().enumerate() {
+                if let Some(triangle) = triangles.get(id as usize) {
+                    leaf.pack.set(lane, &triangle.map(|i| positions[i as usize]));
+                }
+            }
         }
         // Children stand after their parents, so the last node comes first.
         for index in (0..self.nodes.len()).rev() {
-            for side in 0..2 {
-                let child = self.nodes[index].children[side];
-                self.nodes[index].children[side].bounds = self.bounds_of(&child);
+            for lane in 0..4 {
+                let bounds = self.bounds_of(self.nodes[index].children[lane]);
+                self.nodes[index].boxes.set(lane, bounds);
             }
         }
-        self.bounds = self.nodes.first().map_or(Bounds::EMPTY, |root| both(root.children));
+        self.bounds = self.nodes.first().map_or(Bounds::EMPTY, |root| root.boxes.union());
     }
 
-    fn bounds_of(&self, child: &Child) -> Bounds {
-        match child.count {
-            Child::ABSENT => Bounds::EMPTY,
-            0 => both(self.nodes[child.first as usize].children),
-            count => self.vertices[child.first as usize..(child.first + count) as usize]
-                .iter()
-                .fold(Bounds::EMPTY, |bounds, v| bounds.union(triangle_bounds(v))),
+    /// The box around what a child holds.
+    pub(super) fn bounds_of(&self, child: Child) -> Bounds {
+        if let Some(node) = child.as_node() {
+            return self.nodes[node].boxes.union();
         }
+        child.as_leaf().map_or(Bounds::EMPTY, |index| {
+            let leaf = &self.leaves[index];
+            let boxes = leaf.pack.bounds();
+            let used = (0..4).filter(|&lane| leaf.ids[lane] != super::Leaf::NO_TRIANGLE);
+            used.fold(Bounds::EMPTY, |all, lane| all.union(boxes.get(lane)))
+        })
     }
-}
-
-fn both(children: [Child; 2]) -> Bounds {
-    children[0].bounds.union(children[1].bounds)
 }

@@ -2,9 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Accel, Child, MAX_DEPTH};
-use crate::geometry::Bounds;
-use crate::geometry::triangle::triangle_bounds;
+use super::{Accel, Leaf, MAX_DEPTH, Node};
 
 impl Accel {
     /// Checks that each triangle is in exactly one leaf with its own vertices, that boxes hold what is inside, that
@@ -13,49 +11,39 @@ impl Accel {
     /// # Errors
     /// The first thing that is not so.
     pub fn validate(&self, positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), String> {
-        if self.ids.len() != triangles.len() {
-            return Err(format!("{} triangles in leaves, {} given", self.ids.len(), triangles.len()));
-        }
-        if self.is_empty() {
-            return Ok(());
+        if self.triangles != triangles.len() {
+            return Err(format!("{} triangles in the tree, {} given", self.triangles, triangles.len()));
         }
         let mut seen = vec![false; triangles.len()];
-        for (slot, &id) in self.ids.iter().enumerate() {
-            if std::mem::replace(&mut seen[id as usize], true) {
-                return Err(format!("triangle {id} is in two leaves"));
+        for leaf in &self.leaves {
+            for (lane, &id) in leaf.ids.iter().enumerate().filter(|(_, id)| **id != Leaf::NO_TRIANGLE) {
+                if std::mem::replace(&mut seen[id as usize], true) {
+                    return Err(format!("triangle {id} is in two leaves"));
+                }
+                if leaf.pack.get(lane) != triangles[id as usize].map(|i| positions[i as usize]) {
+                    return Err(format!("triangle {id} has other vertices in its leaf"));
+                }
             }
-            if self.vertices[slot] != triangles[id as usize].map(|i| positions[i as usize]) {
-                return Err(format!("triangle {id} has other vertices in its leaf"));
-            }
+        }
+        if let Some(missing) = seen.iter().position(|s| !s) {
+            return Err(format!("triangle {missing} is in no leaf"));
         }
         if self.depth() > MAX_DEPTH {
             return Err(format!("depth {} is over {MAX_DEPTH}", self.depth()));
         }
-        for (index, node) in self.nodes.iter().enumerate() {
-            for child in &node.children {
-                self.validate_child(index, child)?;
+        self.nodes.iter().enumerate().try_for_each(|(index, node)| self.validate_node(index, node))
+    }
+
+    fn validate_node(&self, index: usize, node: &Node) -> Result<(), String> {
+        for (lane, &child) in node.children.iter().enumerate() {
+            if child.as_node().is_some_and(|c| c <= index) {
+                return Err(format!("child {lane} of node {index} does not follow it"));
+            }
+            let (stated, held) = (node.boxes.get(lane), self.bounds_of(child));
+            if stated.union(held) != stated {
+                return Err(format!("child {lane} of node {index} sticks out of its box"));
             }
         }
         Ok(())
-    }
-
-    fn validate_child(&self, index: usize, child: &Child) -> Result<(), String> {
-        let holds = |inner: Bounds| child.bounds.union(inner) == child.bounds;
-        match child.count {
-            Child::ABSENT => Ok(()),
-            0 if child.first as usize <= index => {
-                Err(format!("node {} does not follow its parent", child.first))
-            }
-            0 if self.nodes[child.first as usize].children.iter().all(|c| holds(c.bounds)) => Ok(()),
-            0 => Err(format!("node {} sticks out of its box", child.first)),
-            count => {
-                let leaf = &self.vertices[child.first as usize..(child.first + count) as usize];
-                if leaf.iter().all(|v| holds(triangle_bounds(v))) {
-                    Ok(())
-                } else {
-                    Err(format!("the leaf at {} sticks out of its box", child.first))
-                }
-            }
-        }
     }
 }

@@ -8,58 +8,23 @@
 //! ```text
 //! U = Cx By - Cy Bx,  V = Ax Cy - Ay Cx,  W = Bx Ay - By Ax,   t = (U Az + V Bz + W Cz) / (U + V + W)
 //! ```
+//!
+//! Four triangles are tested at once, one a lane; a lane's result does not depend on the other three.
 
-use glam::{BVec3, Vec3, Vec3Swizzles};
+use glam::{Vec3, Vec4};
 
 use super::{Bounds, Ray};
 
 /// What of a ray the triangle and box tests need, computed once.
 #[derive(Clone, Copy, Debug)]
 pub struct RayCast {
-    /// Start of the ray.
-    pub origin: Vec3,
+    origin: Vec3,
     /// One over the direction; components of zero become huge instead of infinite.
-    pub inverse_direction: Vec3,
-    axes: Axes,
+    inverse_direction: Vec3,
+    /// The axis along which the direction is greatest; the other two follow in cyclic order.
+    pub axis: usize,
+    /// The other two components of the direction over the greatest, and one over the greatest.
     shear: Vec3,
-}
-
-/// The cyclic order of axes that makes the dominant one the last, mirrored to keep the winding.
-#[derive(Clone, Copy, Debug)]
-enum Axes {
-    Yzx,
-    Zyx,
-    Zxy,
-    Xzy,
-    Xyz,
-    Yxz,
-}
-
-impl Axes {
-    fn of(direction: Vec3) -> Self {
-        let a = direction.abs();
-        if a.x >= a.y && a.x >= a.z {
-            if direction.x >= 0.0 { Self::Yzx } else { Self::Zyx }
-        } else if a.y >= a.z {
-            if direction.y >= 0.0 { Self::Zxy } else { Self::Xzy }
-        } else if direction.z >= 0.0 {
-            Self::Xyz
-        } else {
-            Self::Yxz
-        }
-    }
-
-    #[inline(always)]
-    fn permute(self, v: Vec3) -> Vec3 {
-        match self {
-            Self::Yzx => v.yzx(),
-            Self::Zyx => v.zyx(),
-            Self::Zxy => v.zxy(),
-            Self::Xzy => v.xzy(),
-            Self::Xyz => v,
-            Self::Yxz => v.yxz(),
-        }
-    }
 }
 
 /// A ray that meets a triangle.
@@ -71,6 +36,30 @@ pub struct TriangleHit {
     pub barycentric: Vec3,
     /// True when the ray comes from the side that the right-hand normal points to.
     pub from_front: bool,
+}
+
+/// Four triangles: for each vertex and axis the coordinates of all four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrianglePack {
+    coordinates: [[Vec4; 3]; 3],
+}
+
+/// The lanes of a pack that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct PackHits {
+    mask: u32,
+    t: Vec4,
+    edges: [Vec4; 3],
+    determinant: Vec4,
+}
+
+/// Four boxes, by axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundsPack {
+    /// Least corners.
+    pub min: [Vec4; 3],
+    /// Greatest corners.
+    pub max: [Vec4; 3],
 }
 
 /// Relative rounding unit of `f32`.
@@ -85,83 +74,173 @@ const FAR_WIDENING: f32 = 1.0 + 2.0 * (3.0 * UNIT / (1.0 - 3.0 * UNIT));
 impl RayCast {
     /// Prepares a ray.
     pub fn new(ray: &Ray) -> Self {
-        let axes = Axes::of(ray.direction);
-        let d = axes.permute(ray.direction);
+        let d = ray.direction;
+        let axis = d.abs().max_position();
+        let inverse = 1.0 / d[axis];
         Self {
             origin: ray.origin,
-            inverse_direction: safe_inverse(ray.direction),
-            axes,
-            shear: Vec3::new(d.x / d.z, d.y / d.z, 1.0 / d.z),
+            inverse_direction: safe_inverse(d),
+            axis,
+            shear: Vec3::new(d[(axis + 1) % 3] * inverse, d[(axis + 2) % 3] * inverse, inverse),
         }
     }
 
-    /// The distances at which the ray enters and leaves a box, widened so that no triangle inside is lost.
+    /// The distances at which the ray enters and leaves four boxes, widened so that no triangle inside is lost.
     ///
     /// Monotone: a box that holds another is entered no later and left no earlier, to the last bit.
     #[inline(always)]
-    pub fn slab(&self, min: Vec3, max: Vec3) -> (f32, f32) {
-        let low = min - self.origin;
-        let high = max - self.origin;
-        let padding = low.abs().max(high.abs()).max_element() * BOX_PADDING;
-        let t0 = (low - padding) * self.inverse_direction;
-        let t1 = (high + padding) * self.inverse_direction;
-        let near = t0.min(t1).max_element();
-        let far = t0.max(t1).min_element() * FAR_WIDENING;
-        (near.max(0.0), far)
+    pub fn slabs(&self, boxes: &BoundsPack) -> (Vec4, Vec4) {
+        let low: [Vec4; 3] = [0, 1, 2].map(|a| boxes.min[a] - self.origin[a]);
+        let high: [Vec4; 3] = [0, 1, 2].map(|a| boxes.max[a] - self.origin[a]);
+        let largest = |i: usize| low[i].abs().max(high[i].abs());
+        let padding = largest(0).max(largest(1)).max(largest(2)) * BOX_PADDING;
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::INFINITY);
+        for a in 0..3 {
+            let t0 = (low[a] - padding) * self.inverse_direction[a];
+            let t1 = (high[a] + padding) * self.inverse_direction[a];
+            near = near.max(t0.min(t1));
+            far = far.min(t0.max(t1));
+        }
+        (near, far * FAR_WIDENING)
     }
 
-    /// Meets the triangle `v` before or at `t_max`.
+    /// The triangles of a pack that the ray meets before or at `t_max`. `K` is [`RayCast::axis`].
+    #[inline(always)]
+    pub fn pack<const K: usize>(&self, pack: &TrianglePack, t_max: f32) -> Option<PackHits> {
+        let (kx, ky) = ((K + 1) % 3, (K + 2) % 3);
+        let z = [0, 1, 2].map(|v| pack.coordinates[v][K] - self.origin[K]);
+        let x = [0, 1, 2].map(|v| pack.coordinates[v][kx] - self.origin[kx] - z[v] * self.shear.x);
+        let y = [0, 1, 2].map(|v| pack.coordinates[v][ky] - self.origin[ky] - z[v] * self.shear.y);
+        let mut edges = [(2, 1), (0, 2), (1, 0)].map(|(p, q)| x[p] * y[q] - y[p] * x[q]);
+        let on_edge = edges.map(|e| e.cmpeq(Vec4::ZERO).bitmask());
+        if on_edge != [0; 3] {
+            exact_edges(&mut edges, on_edge[0] | on_edge[1] | on_edge[2], &x, &y);
+        }
+        let [u, v, w] = edges;
+        let negative = u.cmplt(Vec4::ZERO) | v.cmplt(Vec4::ZERO) | w.cmplt(Vec4::ZERO);
+        let positive = u.cmpgt(Vec4::ZERO) | v.cmpgt(Vec4::ZERO) | w.cmpgt(Vec4::ZERO);
+        let determinant = u + v + w;
+        let inside = !(negative & positive) & determinant.cmpne(Vec4::ZERO);
+        if !inside.any() {
+            return None;
+        }
+        let t = (u * z[0] + v * z[1] + w * z[2]) * self.shear.z / determinant;
+        let mask = (inside & t.cmpgt(Vec4::ZERO) & t.cmple(Vec4::splat(t_max))).bitmask();
+        (mask != 0).then_some(PackHits { mask, t, edges, determinant })
+    }
+
+    /// Meets one triangle before or at `t_max`.
+    pub fn triangle(&self, v: &[Vec3; 3], t_max: f32) -> Option<TriangleHit> {
+        let mut pack = TrianglePack::EMPTY;
+        pack.set(0, v);
+        let hits = match self.axis {
+            0 => self.pack::<0>(&pack, t_max),
+            1 => self.pack::<1>(&pack, t_max),
+            _ => self.pack::<2>(&pack, t_max),
+        };
+        hits.and_then(|hits| self.settle(&hits, &pack, 0, t_max))
+    }
+
+    /// The hit in a lane of [`PackHits`].
     ///
     /// The distance is brought into the span of the triangle's own box, so that whether and where a triangle is
     /// hit depends on the triangle alone and never on the boxes of a hierarchy around it.
-    #[inline(always)]
-    pub fn triangle(&self, v: &[Vec3; 3], t_max: f32) -> Option<TriangleHit> {
-        let [a, b, c] = v.map(|p| self.axes.permute(p - self.origin));
-        let (ax, ay) = (a.x - self.shear.x * a.z, a.y - self.shear.y * a.z);
-        let (bx, by) = (b.x - self.shear.x * b.z, b.y - self.shear.y * b.z);
-        let (cx, cy) = (c.x - self.shear.x * c.z, c.y - self.shear.y * c.z);
-        let mut edges = Vec3::new(cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        if edges.cmpeq(Vec3::ZERO).any() {
-            edges = exact_edges([ax, ay, bx, by, cx, cy]);
-        }
-        let negative: BVec3 = edges.cmplt(Vec3::ZERO);
-        if negative.any() && edges.cmpgt(Vec3::ZERO).any() {
-            return None;
-        }
-        let determinant = edges.x + edges.y + edges.z;
-        if determinant == 0.0 {
-            return None;
-        }
-        let depth = Vec3::new(a.z, b.z, c.z) * self.shear.z;
-        let inverse = 1.0 / determinant;
-        let t = edges.dot(depth) * inverse;
-        if !(t > 0.0 && t <= t_max) {
-            return None;
-        }
-        let (near, far) = self.slab(v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
+    #[inline]
+    pub fn settle(&self, hits: &PackHits, pack: &TrianglePack, lane: usize, t_max: f32) -> Option<TriangleHit> {
+        let (near, far) = self.slabs(&pack.bounds());
+        let (near, far) = (near[lane], far[lane]);
         if near > far {
             return None;
         }
-        let t = t.max(near).min(far);
-        (t <= t_max).then(|| TriangleHit { t, barycentric: edges * inverse, from_front: determinant > 0.0 })
+        let t = hits.t[lane].max(near).min(far);
+        let determinant = hits.determinant[lane];
+        let [u, v, w] = hits.edges;
+        (t > 0.0 && t <= t_max).then(|| TriangleHit {
+            t,
+            barycentric: Vec3::new(u[lane], v[lane], w[lane]) / determinant,
+            from_front: (determinant > 0.0) == (self.shear.z > 0.0),
+        })
     }
 }
 
-/// The edge functions in double precision, rounded towards their sign: never zero unless exactly zero.
+impl PackHits {
+    /// The lanes that are met, lowest first.
+    #[inline]
+    pub fn lanes(&self) -> impl Iterator<Item = usize> {
+        let mask = self.mask;
+        (0..4).filter(move |lane| mask >> lane & 1 == 1)
+    }
+}
+
+impl TrianglePack {
+    /// No triangle in any lane: each is a point, which nothing meets.
+    pub const EMPTY: Self = Self { coordinates: [[Vec4::ZERO; 3]; 3] };
+
+    /// Puts a triangle into a lane.
+    pub fn set(&mut self, lane: usize, v: &[Vec3; 3]) {
+        for (vertex, p) in v.iter().enumerate() {
+            for axis in 0..3 {
+                self.coordinates[vertex][axis][lane] = p[axis];
+            }
+        }
+    }
+
+    /// The triangle in a lane.
+    pub fn get(&self, lane: usize) -> [Vec3; 3] {
+        self.coordinates.map(|axes| Vec3::from_array(axes.map(|c| c[lane])))
+    }
+
+    /// The box of each lane.
+    #[inline]
+    pub fn bounds(&self) -> BoundsPack {
+        let [a, b, c] = &self.coordinates;
+        BoundsPack {
+            min: [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
+            max: [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
+        }
+    }
+}
+
+impl BoundsPack {
+    /// Four boxes that hold nothing.
+    pub const EMPTY: Self = Self { min: [Vec4::INFINITY; 3], max: [Vec4::NEG_INFINITY; 3] };
+
+    /// Puts a box into a lane.
+    pub fn set(&mut self, lane: usize, bounds: Bounds) {
+        for axis in 0..3 {
+            self.min[axis][lane] = bounds.min[axis];
+            self.max[axis][lane] = bounds.max[axis];
+        }
+    }
+
+    /// The box in a lane.
+    pub fn get(&self, lane: usize) -> Bounds {
+        let corner = |axes: [Vec4; 3]| Vec3::from_array(axes.map(|c| c[lane]));
+        Bounds { min: corner(self.min), max: corner(self.max) }
+    }
+
+    /// The box around all four.
+    pub fn union(&self) -> Bounds {
+        (0..4).fold(Bounds::EMPTY, |all, lane| all.union(self.get(lane)))
+    }
+}
+
+/// The edge functions of some lanes in double precision, rounded away from zero: never zero unless exactly zero.
 #[cold]
-fn exact_edges(sheared: [f32; 6]) -> Vec3 {
-    let [ax, ay, bx, by, cx, cy] = sheared.map(f64::from);
-    let edge = |e: f64| {
-        let rounded = e as f32;
-        if rounded == 0.0 && e != 0.0 { f32::MIN_POSITIVE.copysign(e as f32) } else { rounded }
-    };
-    Vec3::new(edge(cx * by - cy * bx), edge(ax * cy - ay * cx), edge(bx * ay - by * ax))
+fn exact_edges(edges: &mut [Vec4; 3], lanes: u32, x: &[Vec4; 3], y: &[Vec4; 3]) {
+    for lane in (0..4).filter(|lane| lanes >> lane & 1 == 1) {
+        for (edge, (p, q)) in edges.iter_mut().zip([(2, 1), (0, 2), (1, 0)]) {
+            let [xp, yp, xq, yq] = [x[p], y[p], x[q], y[q]].map(|c| f64::from(c[lane]));
+            let exact = xp * yq - yp * xq;
+            let rounded = exact as f32;
+            edge[lane] =
+                if rounded == 0.0 && exact != 0.0 { f32::MIN_POSITIVE.copysign(exact as f32) } else { rounded };
+        }
+    }
 }
 
 fn safe_inverse(d: Vec3) -> Vec3 {
-    let one = |x: f32| {
-        if x.abs() < 1e-18 { 1e18_f32.copysign(x) } else { 1.0 / x }
-    };
+    let one = |x: f32| if x.abs() < 1e-18 { 1e18_f32.copysign(x) } else { 1.0 / x };
     Vec3::new(one(d.x), one(d.y), one(d.z))
 }
 
@@ -222,10 +301,11 @@ mod tests {
             prop_assume!(d.length() > 1e-3);
             let ray = cast(o, d);
             let inner = Bounds::of_points([a, b, c]);
-            let outer = inner.including(e);
-            let (near, far) = ray.slab(inner.min, inner.max);
-            let (outer_near, outer_far) = ray.slab(outer.min, outer.max);
-            prop_assert!(outer_near <= near && outer_far >= far);
+            let mut boxes = BoundsPack::EMPTY;
+            boxes.set(0, inner);
+            boxes.set(1, inner.including(e));
+            let (near, far) = ray.slabs(&boxes);
+            prop_assert!(near.y <= near.x && far.y >= far.x);
         }
 
         #[test]
