@@ -119,7 +119,9 @@ fn children_of(binary: &Bvh2, node: usize) -> Vec<usize> {
     while members.len() < 4 {
         let area = |m: usize| binary.nodes[m].aabb.half_area();
         let inner = (0..members.len()).filter(|&i| !binary.nodes[members[i]].is_leaf());
-        let Some(largest) = inner.max_by(|&a, &b| area(members[a]).total_cmp(&area(members[b]))) else { break };
+        let Some(largest) = inner.max_by(|&a, &b| area(members[a]).total_cmp(&area(members[b]))) else {
+            break;
+        };
         let opened = members.swap_remove(largest);
         members.extend(pair(opened));
     }

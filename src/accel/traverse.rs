@@ -101,7 +101,8 @@ impl Accel {
         self.walk(cast, &mut t_max, |leaf, t_max| {
             cast.pack::<K>(&leaf.pack, *t_max).is_some_and(|hits| {
                 hits.lanes().any(|lane| {
-                    !ignored.contains(leaf.ids[lane]) && cast.settle(&hits, &leaf.pack, lane, *t_max).is_some()
+                    !ignored.contains(leaf.ids[lane])
+                        && cast.settle(&hits, &leaf.pack, lane, *t_max).is_some()
                 })
             })
         })

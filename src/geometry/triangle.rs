@@ -146,7 +146,13 @@ impl RayCast {
     /// The distance is brought into the span of the triangle's own box, so that whether and where a triangle is
     /// hit depends on the triangle alone and never on the boxes of a hierarchy around it.
     #[inline]
-    pub fn settle(&self, hits: &PackHits, pack: &TrianglePack, lane: usize, t_max: f32) -> Option<TriangleHit> {
+    pub fn settle(
+        &self,
+        hits: &PackHits,
+        pack: &TrianglePack,
+        lane: usize,
+        t_max: f32,
+    ) -> Option<TriangleHit> {
         let (near, far) = self.slabs(&pack.bounds());
         let (near, far) = (near[lane], far[lane]);
         if near > far {
@@ -233,8 +239,11 @@ fn exact_edges(edges: &mut [Vec4; 3], lanes: u32, x: &[Vec4; 3], y: &[Vec4; 3]) 
             let [xp, yp, xq, yq] = [x[p], y[p], x[q], y[q]].map(|c| f64::from(c[lane]));
             let exact = xp * yq - yp * xq;
             let rounded = exact as f32;
-            edge[lane] =
-                if rounded == 0.0 && exact != 0.0 { f32::MIN_POSITIVE.copysign(exact as f32) } else { rounded };
+            edge[lane] = if rounded == 0.0 && exact != 0.0 {
+                f32::MIN_POSITIVE.copysign(exact as f32)
+            } else {
+                rounded
+            };
         }
     }
 }

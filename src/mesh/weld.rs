@@ -14,15 +14,14 @@ pub fn weld(mesh: &mut RawMesh) {
     if let Some(CornerNormals { corners: corners @ None, .. }) = &mut mesh.normals {
         *corners = Some(mesh.triangles.clone());
     }
-    // A new index is never above the old one, and the first occurrence of each comes in order.
-    let mut count = 0;
-    for old in 0..mesh.positions.len() {
-        if new_index[old] == count {
-            mesh.positions[count as usize] = mesh.positions[old];
-            count += 1;
-        }
-    }
-    mesh.positions.truncate(count as usize);
+    // The first occurrence of each new index comes in the order of these.
+    let mut next = 0;
+    let mut is_first = new_index.iter().map(|&new| {
+        let first = new == next;
+        next += u32::from(first);
+        first
+    });
+    mesh.positions.retain(|_| is_first.next().unwrap_or(true));
     for index in mesh.triangles.iter_mut().flatten() {
         *index = new_index[*index as usize];
     }

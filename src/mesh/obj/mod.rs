@@ -43,14 +43,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
             "correct the line or write the file again",
         )
     })?;
-    if models.is_empty() && str::from_utf8(bytes).is_err() {
-        let problem = "no vertices, and bytes that are no text";
-        return Err(Fault::malformed(Place::File, problem, "this is no OBJ file; rename or remove it"));
-    }
     let all_normals = screen.every_corner_has_normal();
     drop(screen);
     // Groups are screened out, so that there is one model.
     let mesh = models.into_iter().next().map(|model| model.mesh).unwrap_or_default();
+    if mesh.positions.is_empty() && str::from_utf8(bytes).is_err() {
+        let problem = "no faces, and bytes that are no text";
+        return Err(Fault::malformed(Place::File, problem, "this is no OBJ file; rename or remove it"));
+    }
     convert(mesh, all_normals).map_err(|vertex| screen::not_finite(bytes, vertex))
 }
 

@@ -79,14 +79,15 @@ impl<'a> Screen<'a> {
         !self.corner_without_normal
     }
 
-    /// The fault that was found on the way, or an index beyond the end of its list.
+    /// The fault that was found on the way, if any.
     pub fn finish(&mut self) -> Result<(), Fault> {
-        if let Some(fault) = self.fault.take() {
-            return Err(fault);
-        }
-        let lists = [(&self.positions, "vertices"), (&self.normals, "normals")];
-        // Before the end of the file an index may still be of something that follows.
-        for (list, name) in lists.into_iter().filter(|_| self.rest.is_empty()) {
+        self.fault.take().map_or(Ok(()), Err)
+    }
+
+    /// Refuses an index beyond the end of its list. Only at the end of the file, since an index may be of
+    /// something that follows; and before the parser, which computes with indices, sees that end.
+    fn check_greatest(&self) -> Result<(), Fault> {
+        for (list, name) in [(&self.positions, "vertices"), (&self.normals, "normals")] {
             if list.greatest > list.count {
                 let problem = format!("index {}, but the file has {} {name}", list.greatest, list.count);
                 let cure = "the file is truncated or its faces wrong; write it again";
@@ -106,7 +107,7 @@ impl<'a> Screen<'a> {
             self.next_line += self.text.iter().filter(|&&b| b == b'\n').count();
             self.pass_on(self.text)?;
         }
-        Ok(())
+        if self.out.is_empty() { self.check_greatest() } else { Ok(()) }
     }
 
     fn pass_on(&mut self, line: &[u8]) -> Result<(), Fault> {

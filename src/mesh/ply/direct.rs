@@ -154,5 +154,7 @@ fn f64_at(bytes: &[u8], at: usize) -> f64 {
 }
 
 fn array_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
-    std::array::from_fn(|k| bytes[at + k])
+    let mut array = [0; N];
+    array.copy_from_slice(&bytes[at..at + N]);
+    array
 }

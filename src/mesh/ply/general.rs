@@ -193,7 +193,7 @@ fn fault(error: &ParseError, place: Place, count: usize) -> Fault {
     let problem = if error.kind() == ErrorKind::UnexpectedEof {
         format!("the file ends within this element; {count} are declared")
     } else {
-        excerpt(error.to_string().as_bytes())
+        excerpt(error.to_string().trim_end_matches('.').as_bytes())
     };
     Fault::malformed(place, problem, WRITE_AGAIN)
 }

@@ -40,9 +40,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Fault> {
     let declared = Parser::<VertexRecord>::new().read_header(&mut Reader::new(text)).map_err(|error| {
         let place = error.line().map_or(Place::File, Place::Line);
         let message = error.to_string();
-        let line = message.split("String: '").nth(1).unwrap_or(&message);
-        let line = line.split('\'').next().unwrap_or(line).trim();
-        Fault::malformed(place, format!("not a header line: '{}'", excerpt(line.as_bytes())), CURE)
+        // The parser's messages about a line quote it.
+        let problem = match message.split_once("String: '") {
+            Some((_, quoted)) => {
+                let line = quoted.lines().next().unwrap_or(quoted).trim_end_matches('\'');
+                format!("not a header line: '{}'", excerpt(line.as_bytes()))
+            }
+            None => excerpt(message.trim_end_matches('.').as_bytes()),
+        };
+        Fault::malformed(place, problem, CURE)
     })?;
     check_repeats(text, &declared)?;
     let lines = text.iter().filter(|&&b| b == b'\n').count();
