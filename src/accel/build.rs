@@ -56,7 +56,7 @@ impl Accel {
                 }
             }
         }
-        accel.bounds = accel.nodes[0].boxes.union();
+        accel.bounds = around(corners, &binary.primitive_indices);
         accel
     }
 
@@ -64,6 +64,7 @@ impl Accel {
     fn balanced(corners: &[[Vec3; 3]], order: &[u32]) -> Self {
         let mut accel = Self { triangles: corners.len(), ..Self::default() };
         accel.nodes.push(Node::EMPTY);
+        let whole = around(corners, order);
         let mut open = vec![(order, 0)];
         while let Some((order, node)) = open.pop() {
             let share = order.len().div_ceil(4).next_multiple_of(LEAF_SIZE);
@@ -79,7 +80,7 @@ impl Accel {
                 }
             }
         }
-        accel.bounds = accel.nodes[0].boxes.union();
+        accel.bounds = whole;
         accel
     }
 

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::{Accel, Child};
+use super::{Accel, Child, Leaf};
 use crate::geometry::Bounds;
+use crate::geometry::triangle::triangle_bounds;
 
 impl Accel {
     /// Moves the vertices; `triangles` are those that the hierarchy was built from.
@@ -17,25 +18,24 @@ impl Accel {
             }
         }
         // Children stand after their parents, so the last node comes first.
+        let mut around = vec![Bounds::EMPTY; self.nodes.len()];
         for index in (0..self.nodes.len()).rev() {
             for lane in 0..4 {
-                let bounds = self.bounds_of(self.nodes[index].children[lane]);
-                self.nodes[index].boxes.set(lane, bounds);
+                let child = self.nodes[index].children[lane];
+                let bounds = child.as_node().map_or_else(|| self.leaf_bounds(child), |node| around[node]);
+                around[index] = around[index].union(bounds);
+                if child != Child::NOTHING {
+                    self.nodes[index].boxes.set(lane, bounds);
+                }
             }
         }
-        self.bounds = self.nodes.first().map_or(Bounds::EMPTY, |root| root.boxes.union());
+        self.bounds = around.first().copied().unwrap_or_default();
     }
 
-    /// The box around what a child holds.
-    pub(super) fn bounds_of(&self, child: Child) -> Bounds {
-        if let Some(node) = child.as_node() {
-            return self.nodes[node].boxes.union();
-        }
-        child.as_leaf().map_or(Bounds::EMPTY, |index| {
-            let leaf = &self.leaves[index];
-            let boxes = leaf.pack.bounds();
-            let used = (0..4).filter(|&lane| leaf.ids[lane] != super::Leaf::NO_TRIANGLE);
-            used.fold(Bounds::EMPTY, |all, lane| all.union(boxes.get(lane)))
-        })
+    /// The box around a leaf's triangles; empty for what is no leaf.
+    pub(super) fn leaf_bounds(&self, child: Child) -> Bounds {
+        let Some(leaf) = child.as_leaf().map(|index| &self.leaves[index]) else { return Bounds::EMPTY };
+        let used = (0..4).filter(|&lane| leaf.ids[lane] != Leaf::NO_TRIANGLE);
+        used.fold(Bounds::EMPTY, |all, lane| all.union(triangle_bounds(&leaf.pack.get(lane))))
     }
 }

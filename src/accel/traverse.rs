@@ -35,12 +35,6 @@ struct Stack {
 }
 
 impl Stack {
-    #[inline(always)]
-    fn push(&mut self, near: f32, child: Child) {
-        self.entries[self.len] = (near, child);
-        self.len += 1;
-    }
-
     /// The last pushed child that is entered before or at `t_max`.
     #[inline(always)]
     fn pop(&mut self, t_max: f32) -> Option<Child> {

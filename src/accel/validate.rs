@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::{Accel, Leaf, MAX_DEPTH, Node};
+use crate::geometry::Bounds;
 
 impl Accel {
     /// Checks that each triangle is in exactly one leaf with its own vertices, that boxes hold what is inside, that
@@ -39,8 +40,13 @@ impl Accel {
             if child.as_node().is_some_and(|c| c <= index) {
                 return Err(format!("child {lane} of node {index} does not follow it"));
             }
-            let (stated, held) = (node.boxes.get(lane), self.bounds_of(child));
-            if stated.union(held) != stated {
+            let stated = node.boxes.get(lane);
+            let inside = |bounds: Bounds| stated.union(bounds) == stated;
+            let sound = match child.as_node() {
+                Some(c) => (0..4).all(|l| inside(self.nodes[c].boxes.get(l))),
+                None => inside(self.leaf_bounds(child)),
+            };
+            if !sound {
                 return Err(format!("child {lane} of node {index} sticks out of its box"));
             }
         }

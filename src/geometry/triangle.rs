@@ -19,8 +19,12 @@ use super::{Bounds, Ray};
 #[derive(Clone, Copy, Debug)]
 pub struct RayCast {
     origin: Vec3,
+    /// The origin moved away from the planes where a ray enters boxes, and from those where it leaves them.
+    origins: [Vec3; 2],
     /// One over the direction; components of zero become huge instead of infinite.
     inverse_direction: Vec3,
+    /// 1 where the direction is negative: which plane of a box is entered first.
+    signs: [usize; 3],
     /// The axis along which the direction is greatest; the other two follow in cyclic order.
     pub axis: usize,
     /// The other two components of the direction over the greatest, and one over the greatest.
@@ -53,21 +57,19 @@ pub struct PackHits {
     determinant: Vec4,
 }
 
-/// Four boxes, by axis.
+/// Four boxes, a little larger than what they hold: least and greatest corners, by axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundsPack {
-    /// Least corners.
-    pub min: [Vec4; 3],
-    /// Greatest corners.
-    pub max: [Vec4; 3],
+    planes: [[Vec4; 3]; 2],
 }
 
 /// Relative rounding unit of `f32`.
 const UNIT: f32 = f32::EPSILON * 0.5;
 /// The sheared vertices are off by at most 5 rounding units of the largest coordinate relative to the ray's origin
 /// (one for the difference, one each for shear factor and product, one for the last difference, one spare), and
-/// a box has to hold what the triangle test accepts.
-const BOX_PADDING: f32 = 6.0 * UNIT;
+/// a box has to hold what the triangle test accepts. That coordinate is at most the largest of the box plus the
+/// largest of the origin; each of the two gets its part, with three units for the roundings of the padding itself.
+const PADDING: f32 = 8.0 * UNIT;
 /// 1 + 2 gamma(3): the slab distances carry three roundings each `[IZE13 section 3]`.
 const FAR_WIDENING: f32 = 1.0 + 2.0 * (3.0 * UNIT / (1.0 - 3.0 * UNIT));
 
@@ -77,9 +79,14 @@ impl RayCast {
         let d = ray.direction;
         let axis = d.abs().max_position();
         let inverse = 1.0 / d[axis];
+        let padding = Vec3::splat(ray.origin.abs().max_element() * PADDING);
+        let negative = d.cmplt(Vec3::ZERO);
+        let away = Vec3::select(negative, -padding, padding);
         Self {
             origin: ray.origin,
+            origins: [ray.origin + away, ray.origin - away],
             inverse_direction: safe_inverse(d),
+            signs: [0, 1, 2].map(|a| usize::from(negative.test(a))),
             axis,
             shear: Vec3::new(d[(axis + 1) % 3] * inverse, d[(axis + 2) % 3] * inverse, inverse),
         }
@@ -90,16 +97,12 @@ impl RayCast {
     /// Monotone: a box that holds another is entered no later and left no earlier, to the last bit.
     #[inline(always)]
     pub fn slabs(&self, boxes: &BoundsPack) -> (Vec4, Vec4) {
-        let low: [Vec4; 3] = [0, 1, 2].map(|a| boxes.min[a] - self.origin[a]);
-        let high: [Vec4; 3] = [0, 1, 2].map(|a| boxes.max[a] - self.origin[a]);
-        let largest = |i: usize| low[i].abs().max(high[i].abs());
-        let padding = largest(0).max(largest(1)).max(largest(2)) * BOX_PADDING;
         let (mut near, mut far) = (Vec4::ZERO, Vec4::INFINITY);
         for a in 0..3 {
-            let t0 = (low[a] - padding) * self.inverse_direction[a];
-            let t1 = (high[a] + padding) * self.inverse_direction[a];
-            near = near.max(t0.min(t1));
-            far = far.min(t0.max(t1));
+            let sign = self.signs[a];
+            let inverse = self.inverse_direction[a];
+            near = near.max((boxes.planes[sign][a] - self.origins[0][a]) * inverse);
+            far = far.min((boxes.planes[1 - sign][a] - self.origins[1][a]) * inverse);
         }
         (near, far * FAR_WIDENING)
     }
@@ -153,8 +156,10 @@ impl RayCast {
         lane: usize,
         t_max: f32,
     ) -> Option<TriangleHit> {
-        let (near, far) = self.slabs(&pack.bounds());
-        let (near, far) = (near[lane], far[lane]);
+        let mut own = BoundsPack::EMPTY;
+        own.set(0, triangle_bounds(&pack.get(lane)));
+        let (near, far) = self.slabs(&own);
+        let (near, far) = (near.x, far.x);
         if near > far {
             return None;
         }
@@ -195,39 +200,25 @@ impl TrianglePack {
     pub fn get(&self, lane: usize) -> [Vec3; 3] {
         self.coordinates.map(|axes| Vec3::from_array(axes.map(|c| c[lane])))
     }
-
-    /// The box of each lane.
-    #[inline]
-    pub fn bounds(&self) -> BoundsPack {
-        let [a, b, c] = &self.coordinates;
-        BoundsPack {
-            min: [0, 1, 2].map(|i| a[i].min(b[i]).min(c[i])),
-            max: [0, 1, 2].map(|i| a[i].max(b[i]).max(c[i])),
-        }
-    }
 }
 
 impl BoundsPack {
     /// Four boxes that hold nothing.
-    pub const EMPTY: Self = Self { min: [Vec4::INFINITY; 3], max: [Vec4::NEG_INFINITY; 3] };
+    pub const EMPTY: Self = Self { planes: [[Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]] };
 
-    /// Puts a box into a lane.
+    /// Puts the box around `bounds` into a lane.
     pub fn set(&mut self, lane: usize, bounds: Bounds) {
+        let padding = bounds.min.abs().max(bounds.max.abs()).max_element() * PADDING;
         for axis in 0..3 {
-            self.min[axis][lane] = bounds.min[axis];
-            self.max[axis][lane] = bounds.max[axis];
+            self.planes[0][axis][lane] = bounds.min[axis] - padding;
+            self.planes[1][axis][lane] = bounds.max[axis] + padding;
         }
     }
 
-    /// The box in a lane.
+    /// The box in a lane, padding included.
     pub fn get(&self, lane: usize) -> Bounds {
         let corner = |axes: [Vec4; 3]| Vec3::from_array(axes.map(|c| c[lane]));
-        Bounds { min: corner(self.min), max: corner(self.max) }
-    }
-
-    /// The box around all four.
-    pub fn union(&self) -> Bounds {
-        (0..4).fold(Bounds::EMPTY, |all, lane| all.union(self.get(lane)))
+        Bounds { min: corner(self.planes[0]), max: corner(self.planes[1]) }
     }
 }
 
@@ -249,7 +240,11 @@ fn exact_edges(edges: &mut [Vec4; 3], lanes: u32, x: &[Vec4; 3], y: &[Vec4; 3]) 
 }
 
 fn safe_inverse(d: Vec3) -> Vec3 {
-    let one = |x: f32| if x.abs() < 1e-18 { 1e18_f32.copysign(x) } else { 1.0 / x };
+    let one = |x: f32| match x {
+        _ if x.abs() >= 1e-18 => 1.0 / x,
+        _ if x < 0.0 => -1e18,
+        _ => 1e18,
+    };
     Vec3::new(one(d.x), one(d.y), one(d.z))
 }
 

@@ -4,9 +4,26 @@
 //! only reach higher ones, on numbers with their bits reversed `[BURLEY20]`. The hash is that of N. Vegdahl, whose
 //! statistics are closer to a true Owen scramble than the original constants.
 
-/// Direction numbers of the first four dimensions, bits reversed: row b is XORed in when bit b of the index is set.
-const DIRECTIONS: [[u32; 4]; 32] = direction_numbers();
+/// What each value of each byte of the index adds to the first four dimensions, bits reversed.
+static BYTES: [[[u32; 4]; 256]; 4] = byte_tables();
 
+/// The sums of direction numbers over the bits of a byte.
+const fn byte_tables() -> [[[u32; 4]; 256]; 4] {
+    let directions = direction_numbers();
+    let mut tables = [[[0_u32; 4]; 256]; 4];
+    let mut entry = 0;
+    while entry < 4 * 256 * 32 {
+        let (byte, value, bit, dimension) = (entry / 8192, entry / 32 % 256, entry / 4 % 8, entry % 4);
+        if value >> bit & 1 == 1 {
+            tables[byte][value][dimension] ^= directions[8 * byte + bit][dimension];
+        }
+        entry += 1;
+    }
+    tables
+}
+
+/// Direction numbers, bits reversed: row b is XORed in when bit b of the index is set.
+///
 /// Dimension 0 is van der Corput's; the others follow from primitive polynomials (degree, inner coefficients) and
 /// initial numbers `[JOE08]`.
 const fn direction_numbers() -> [[u32; 4]; 32] {
@@ -49,13 +66,9 @@ const fn direction_numbers() -> [[u32; 4]; 32] {
 #[inline]
 pub fn scrambled4(index: u32, seed: u32) -> [u32; 4] {
     let shuffled = scramble(index.reverse_bits(), seed).reverse_bits();
-    let mut reversed = [0_u32; 4];
-    for (bit, row) in DIRECTIONS.iter().enumerate() {
-        let mask = 0_u32.wrapping_sub((shuffled >> bit) & 1);
-        for d in 0..4 {
-            reversed[d] ^= row[d] & mask;
-        }
-    }
+    let rows: [&[u32; 4]; 4] =
+        std::array::from_fn(|byte| &BYTES[byte][(shuffled >> (8 * byte) & 255) as usize]);
+    let reversed: [u32; 4] = std::array::from_fn(|d| rows[0][d] ^ rows[1][d] ^ rows[2][d] ^ rows[3][d]);
     let seeds = [0x8c8c_8d3f_u32, 0x1f12_3bb5, 0x5fa4_f4d1, 0xb492_b66f];
     std::array::from_fn(|d| scramble(reversed[d], seed.wrapping_mul(0x9e37_79b1) ^ seeds[d]).reverse_bits())
 }
