@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use floe::mesh::Region;
+use floe::optics::RefractiveIndex;
+use floe::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
 use floe::scene::description::*;
 use floe::spectrum::Spectrum;
 use glam::{DVec3, Vec3};
@@ -33,8 +35,8 @@ fn an_empty_file_has_every_default() {
     assert_eq!(scene.regions.into_iter().collect::<Vec<_>>(), [(Region(0), "air".to_owned())]);
     assert_eq!(scene.media.keys().collect::<Vec<_>>(), ["air"]);
     let air = &scene.media["air"];
-    assert_eq!((&air.ior, &air.absorption), (&IorDescription::Constant(1.0), &None));
-    assert_eq!((&air.scattering, air.phase), (&Spectrum::Constant(0.0), PhaseDescription::Isotropic));
+    assert_eq!((&air.ior, &air.absorption), (&RefractiveIndex::Constant(1.0), &None));
+    assert_eq!((&air.scattering, air.phase), (&Spectrum::Constant(0.0), PhaseFunction::Isotropic(Isotropic)));
     assert_eq!((scene.domain, scene.surfaces.len(), scene.sun), (None, 0, None));
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Constant(0.0)));
     assert_eq!(scene.camera.placement, None);
@@ -58,8 +60,8 @@ fn a_whole_scene_is_read_as_written() {
     assert_eq!(domain.reflectance, Spectrum::Constant(0.5));
     let sea = &scene.media["sea"];
     let absorption = AbsorptionDescription::Spectrum(Spectrum::Rgb([0.35, 0.07, 0.03]));
-    assert_eq!((&sea.ior, &sea.absorption), (&IorDescription::Constant(1.33), &Some(absorption)));
-    assert_eq!(sea.phase, PhaseDescription::HenyeyGreenstein { g: 0.9 });
+    assert_eq!((&sea.ior, &sea.absorption), (&RefractiveIndex::Constant(1.33), &Some(absorption)));
+    assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
     let sun = scene.sun.unwrap();
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
@@ -76,10 +78,10 @@ fn spectra_in_every_form() {
     assert_eq!((frames.inside, frames.up), (Region(4), Axis { index: 1, negative: true }));
     assert_eq!(scene.camera.up, -Vec3::Y);
     let water = &scene.media["water"];
-    assert_eq!(water.ior, IorDescription::Water { temperature: 10.0, salinity: 35.0 });
+    assert_eq!(water.ior, RefractiveIndex::Water { temperature: 10.0, salinity: 35.0 });
     assert_eq!(water.absorption, Some(AbsorptionDescription::Water));
-    assert_eq!(scene.media["ice"].ior, IorDescription::Ice);
-    let glass = IorDescription::Table {
+    assert_eq!(scene.media["ice"].ior, RefractiveIndex::Ice);
+    let glass = RefractiveIndex::Table {
         wavelengths: vec![400.0, 550.0, 700.0],
         n: vec![1.53, 1.52, 1.51],
         k: vec![0.0, 1e-8, 0.0],

@@ -9,10 +9,10 @@ const SKY: (usize, usize) = (128, 64);
 
 /// The sky of the iceberg: blue above, bright at the horizon, a wide warm glow around a low sun.
 fn iceberg_sky(direction: Vec3) -> Vec3 {
-    let zenith = Vec3::new(0.16, 0.31, 0.62);
-    let horizon = Vec3::new(0.72, 0.84, 0.97);
-    let glow = Vec3::new(2.3, 1.95, 1.55);
-    let towards_sun = Vec3::new(-0.80, -0.05, 0.60).normalize();
+    let zenith = Vec3::new(0.17, 0.35, 0.72);
+    let horizon = Vec3::new(0.70, 0.84, 1.00);
+    let glow = Vec3::new(2.2, 1.8, 1.3);
+    let towards_sun = Vec3::new(-0.85, -0.35, 0.60).normalize();
     let lobe = (0.5 + 0.5 * direction.dot(towards_sun)).powi(7);
     // Below the horizon, where the sea hides it, the sky goes on as it is there: texels straddle the horizon.
     horizon.lerp(zenith, direction.z.max(0.0).sqrt()) + glow * lobe

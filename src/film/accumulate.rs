@@ -19,7 +19,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::luminance::luminance_f64;
+use crate::spectrum::luminance::luminance_f64;
 
 /// Independent replicates of a pixel's samples.
 pub const REPLICATES: usize = crate::sampling::REPLICATES as usize;

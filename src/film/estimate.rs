@@ -14,7 +14,7 @@
 //! `the_interval_holds_the_true_error_as_often_as_it_says` checks its rate.
 
 use super::frame_image::FrameImage;
-use super::luminance::luminance_f64;
+use crate::spectrum::luminance::luminance_f64;
 
 /// Luminance below which errors count as absolute.
 pub const LUMINANCE_FLOOR: f64 = 0.02;

@@ -24,7 +24,6 @@ mod exr_channels;
 mod exr_header;
 pub mod filter;
 pub mod frame_image;
-pub mod luminance;
 pub mod metadata;
 pub mod png;
 #[cfg(test)]

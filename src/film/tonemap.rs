@@ -22,8 +22,8 @@
 
 use glam::Vec3;
 
-use super::luminance::luminance;
 use crate::geometry::elementary::pow;
+use crate::spectrum::luminance::luminance;
 
 /// Gain before the tone curve: middle grey is kept.
 pub const PRE_EXPOSURE: f32 = 0.22 / 0.18;

@@ -184,8 +184,8 @@ impl PackHits {
 }
 
 impl TrianglePack {
-    /// No triangle in any lane: each is a point, which nothing meets.
-    pub const EMPTY: Self = Self { coordinates: [[Vec4::ZERO; 3]; 3] };
+    /// No triangle in any lane: every comparison with what is not a number fails.
+    pub const EMPTY: Self = Self { coordinates: [[Vec4::NAN; 3]; 3] };
 
     /// Puts a triangle into a lane.
     pub fn set(&mut self, lane: usize, v: &[Vec3; 3]) {

@@ -7,15 +7,14 @@ use glam::DVec3;
 
 use super::camera::Camera;
 use super::description::{
-    AbsorptionDescription, FramesDescription, IntegratorKind, IorDescription, MaterialDescription,
-    MediumDescription, PhaseDescription, Placement, SceneDescription, SkyDescription,
+    AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
+    Placement, SceneDescription, SkyDescription,
 };
 use super::error::FrameError;
 use crate::light::{Environment, Picture, Sun};
 use crate::mesh::{self, RawMesh, Region};
 use crate::optics::RefractiveIndex;
 use crate::optics::medium::{Medium, MediumId};
-use crate::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
 use crate::sequence::has_place;
 use crate::spectrum::{LaneMode, Role, Spectrum};
 
@@ -138,24 +137,10 @@ fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTr
 fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
     Medium {
         name: name.into(),
-        n: index_of(&medium.ior).for_rays(),
+        n: medium.ior.for_rays(),
         sigma_a: absorption_of(medium).prepare(Role::Coefficient, mode),
         sigma_s: medium.scattering.prepare(Role::Coefficient, mode),
-        phase: match medium.phase {
-            PhaseDescription::Isotropic => PhaseFunction::Isotropic(Isotropic),
-            PhaseDescription::HenyeyGreenstein { g } => {
-                PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g })
-            }
-        },
-    }
-}
-
-fn index_of(ior: &IorDescription) -> RefractiveIndex {
-    match ior.clone() {
-        IorDescription::Constant(n) => RefractiveIndex::Constant(n),
-        IorDescription::Water { temperature, salinity } => RefractiveIndex::Water { temperature, salinity },
-        IorDescription::Ice => RefractiveIndex::Ice,
-        IorDescription::Table { wavelengths, n, k } => RefractiveIndex::Table { wavelengths, n, k },
+        phase: medium.phase,
     }
 }
 
@@ -167,7 +152,7 @@ fn absorption_of(medium: &MediumDescription) -> Spectrum {
             implied(&RefractiveIndex::Water { temperature: 20.0, salinity: 0.0 })
         }
         Some(AbsorptionDescription::Ice) => implied(&RefractiveIndex::Ice),
-        None => implied(&index_of(&medium.ior)),
+        None => implied(&medium.ior),
     }
 }
 

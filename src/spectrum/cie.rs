@@ -11,7 +11,7 @@
 
 use std::sync::LazyLock;
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3};
 
 /// Least wavelength in nm.
 pub const LAMBDA_MIN: f64 = 380.0;
@@ -94,11 +94,6 @@ pub fn xyz_to_rgb(xyz: DVec3) -> DVec3 {
 /// Linear Rec. 709 to XYZ.
 pub fn rgb_to_xyz(rgb: DVec3) -> DVec3 {
     REC709.rgb_to_xyz * rgb
-}
-
-/// Y of linear Rec. 709: 1 for white.
-pub fn luminance(rgb: Vec3) -> f32 {
-    REC709.rgb_to_xyz.row(1).dot(rgb.as_dvec3()) as f32
 }
 
 /// The knot at or below `lambda` (never the last) and the fraction of the way to the next, in [0, 1].
@@ -223,7 +218,6 @@ mod tests {
         let white = rgb(d65);
         assert!((white - DVec3::ONE).abs().max_element() < 1e-14, "{white}");
         assert!((xyz(d65).y - 1.0).abs() < 1e-14);
-        assert_eq!(luminance(Vec3::ONE), 1.0);
     }
 
     /// Published chromaticity of D65 (0.31272, 0.32903). It was computed at 1 nm from a wider range; the 5 nm

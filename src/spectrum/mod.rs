@@ -14,6 +14,7 @@ pub mod cie;
 pub mod curve;
 pub mod lab;
 pub mod light_primaries;
+pub mod luminance;
 pub mod rgb;
 pub mod wavelength;
 

@@ -163,9 +163,10 @@ fn significant(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::framing::tests::extent;
-    use super::super::{AbsorptionDescription, IorDescription, SceneDescription, Wall};
+    use super::super::{AbsorptionDescription, SceneDescription, Wall};
     use super::*;
     use crate::mesh::Region;
+    use crate::optics::RefractiveIndex;
     use crate::spectrum::Spectrum;
     use proptest::prelude::*;
     use std::path::Path;
@@ -209,7 +210,7 @@ mod tests {
             [(-3, "fluid_minus_3"), (0, "air"), (1, "sea"), (2, "ice"), (3, "fluid_3"), (7, "fluid_7")];
         assert_eq!(regions, names);
         assert!(scene.domain.is_none());
-        assert_eq!(scene.media["ice"].ior, IorDescription::Constant(1.31));
+        assert_eq!(scene.media["ice"].ior, RefractiveIndex::Constant(1.31));
         assert_eq!(scene.media["ice"].scattering, Spectrum::Constant(8.0));
         let colours =
             ["fluid_minus_3", "fluid_3", "fluid_7"].map(|name| scene.media[name].absorption.clone());

@@ -7,7 +7,9 @@ use super::error::SceneError;
 use super::nearest::suggestion;
 use super::spectrum_value;
 use super::value::Value;
-use super::{AbsorptionDescription, IorDescription, MediumDescription, PhaseDescription};
+use super::{AbsorptionDescription, MediumDescription};
+use crate::optics::RefractiveIndex;
+use crate::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
 use crate::spectrum::Spectrum;
 
 /// The medium that every scene has.
@@ -70,10 +72,10 @@ impl Default for MediumDescription {
     /// Clear, with index 1: air.
     fn default() -> Self {
         Self {
-            ior: IorDescription::Constant(1.0),
+            ior: RefractiveIndex::Constant(1.0),
             absorption: None,
             scattering: Spectrum::Constant(0.0),
-            phase: PhaseDescription::Isotropic,
+            phase: PhaseFunction::Isotropic(Isotropic),
         }
     }
 }
@@ -88,22 +90,22 @@ enum Substance {
 const SUBSTANCES: [(&str, Substance); 2] = [("water", Substance::Water), ("ice", Substance::Ice)];
 
 /// `ior = ..`
-fn ior(value: &Value<'_>) -> Result<IorDescription, SceneError> {
+fn ior(value: &Value<'_>) -> Result<RefractiveIndex, SceneError> {
     const FORMS: &str =
         "a number, { table = \"water\" }, { table = \"ice\" }, or { wavelength = [..], n = [..], k = [..] }";
     if value.is_number() {
-        return Ok(IorDescription::Constant(value.number32(&Allowed::POSITIVE)?));
+        return Ok(RefractiveIndex::Constant(value.number32(&Allowed::POSITIVE)?));
     }
     let table = value.table(FORMS)?;
     let ior = match table.get("table").map(|v| v.choice(&SUBSTANCES)).transpose()? {
         Some(Substance::Water) => {
             let number = |key, allowed, default| table.get(key).map_or(Ok(default), |v| v.number32(allowed));
-            IorDescription::Water {
+            RefractiveIndex::Water {
                 temperature: number("temperature", &Allowed::CELSIUS_OF_WATER, SEA_WATER.0)?,
                 salinity: number("salinity", &Allowed::SALINITY, SEA_WATER.1)?,
             }
         }
-        Some(Substance::Ice) => IorDescription::Ice,
+        Some(Substance::Ice) => RefractiveIndex::Ice,
         None => {
             let wavelengths = spectrum_value::wavelengths(&table)?;
             let count = wavelengths.len();
@@ -112,7 +114,7 @@ fn ior(value: &Value<'_>) -> Result<IorDescription, SceneError> {
                 Some(_) => spectrum_value::samples(&table, "k", &Allowed::NOT_NEGATIVE, count)?,
                 None => vec![0.0; count],
             };
-            IorDescription::Table { wavelengths, n, k }
+            RefractiveIndex::Table { wavelengths, n, k }
         }
     };
     table.finish()?;
@@ -135,7 +137,7 @@ fn absorption(value: &Value<'_>) -> Result<AbsorptionDescription, SceneError> {
 }
 
 /// `phase = { kind = .. }`
-fn phase(value: &Value<'_>) -> Result<PhaseDescription, SceneError> {
+fn phase(value: &Value<'_>) -> Result<PhaseFunction, SceneError> {
     #[derive(Clone, Copy)]
     enum Kind {
         Isotropic,
@@ -146,10 +148,10 @@ fn phase(value: &Value<'_>) -> Result<PhaseDescription, SceneError> {
     let kind = table.require("kind", &format!("write {forms}"))?;
     let kinds = [("isotropic", Kind::Isotropic), ("henyey-greenstein", Kind::HenyeyGreenstein)];
     let phase = match kind.choice(&kinds)? {
-        Kind::Isotropic => PhaseDescription::Isotropic,
+        Kind::Isotropic => PhaseFunction::Isotropic(Isotropic),
         Kind::HenyeyGreenstein => {
             let g = table.require("g", "write the mean cosine, such as g = 0.9")?;
-            PhaseDescription::HenyeyGreenstein { g: g.number32(&Allowed::MEAN_COSINE)? }
+            PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: g.number32(&Allowed::MEAN_COSINE)? })
         }
     };
     table.finish()?;

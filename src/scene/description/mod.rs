@@ -38,6 +38,8 @@ use std::path::PathBuf;
 use glam::{DVec3, Vec3};
 
 use crate::mesh::Region;
+use crate::optics::RefractiveIndex;
+use crate::optics::phase::PhaseFunction;
 use crate::spectrum::Spectrum;
 
 /// Everything that a scene file says.
@@ -154,38 +156,13 @@ pub enum Wall {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MediumDescription {
     /// Refractive index.
-    pub ior: IorDescription,
+    pub ior: RefractiveIndex,
     /// Absorption in 1/m; `None` takes what the index's table implies (4 pi k / lambda), or nothing.
     pub absorption: Option<AbsorptionDescription>,
     /// Scattering in 1/m.
     pub scattering: Spectrum,
     /// Phase function of the scattering.
-    pub phase: PhaseDescription,
-}
-
-/// `ior = ..`
-#[derive(Clone, Debug, PartialEq)]
-pub enum IorDescription {
-    /// The same at every wavelength.
-    Constant(f32),
-    /// Pure or sea water after Quan and Fry: `{ table = "water", temperature = 10, salinity = 35 }`.
-    Water {
-        /// Degrees Celsius.
-        temperature: f32,
-        /// Parts per thousand.
-        salinity: f32,
-    },
-    /// Ice after Warren and Brandt: `{ table = "ice" }`.
-    Ice,
-    /// `{ wavelength = [..], n = [..], k = [..] }`
-    Table {
-        /// Wavelengths in nm, strictly rising.
-        wavelengths: Vec<f32>,
-        /// Real part.
-        n: Vec<f32>,
-        /// Imaginary part (k >= 0 absorbs).
-        k: Vec<f32>,
-    },
+    pub phase: PhaseFunction,
 }
 
 /// `absorption = ..`
@@ -197,18 +174,6 @@ pub enum AbsorptionDescription {
     Water,
     /// Measured absorption of pure ice: `{ table = "ice" }`.
     Ice,
-}
-
-/// `phase = { kind = .. }`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PhaseDescription {
-    /// The same in every direction.
-    Isotropic,
-    /// Henyey and Greenstein's, with its mean cosine g in (-1, 1).
-    HenyeyGreenstein {
-        /// Mean cosine.
-        g: f32,
-    },
 }
 
 /// `[[surfaces]]`
