@@ -85,12 +85,15 @@ impl Sample<'_> {
             self.scratch.counters.shadow_rays += 1;
             let coefficients = self.scratch.media[medium.0 as usize];
             if !self.frame.needs.matched_interfaces {
-                let blocked = self.frame.accel.occluded(&ray, ignored);
+                let blocked = self.ends_in_the_dark(&ray, medium) || self.frame.accel.occluded(&ray, ignored);
                 return if blocked { Lanes::ZERO } else { visible * coefficients.transmittance(ray.t_max) };
             }
             let Some(hit) = self.frame.accel.closest(&ray, ignored) else {
-                let dark = ray.t_max.is_infinite() && self.frame.endless[medium.0 as usize];
-                return if dark { Lanes::ZERO } else { visible * coefficients.transmittance(ray.t_max) };
+                return if self.ends_in_the_dark(&ray, medium) {
+                    Lanes::ZERO
+                } else {
+                    visible * coefficients.transmittance(ray.t_max)
+                };
             };
             let Surface::Interface(pair) = self.frame.surface(hit.triangle) else {
                 return Lanes::ZERO;
@@ -107,5 +110,10 @@ impl Sample<'_> {
             ray.t_max -= hit.t;
             ignored = Ignored([hit.triangle, source]);
         }
+    }
+
+    /// True when the ray runs to infinity in a medium without end.
+    fn ends_in_the_dark(&self, ray: &Ray, medium: MediumId) -> bool {
+        ray.t_max.is_infinite() && self.frame.endless[medium.0 as usize]
     }
 }

@@ -86,6 +86,8 @@ pub(super) struct Sample<'a> {
     pub(super) frame: &'a Frame,
     pub(super) scratch: &'a mut Scratch,
     pub(super) wavelengths: &'a Wavelengths,
+    /// Interactions along a path at most.
+    pub(super) max_depth: u32,
     pub(super) radiance: Lanes,
     pub(super) first: Option<FirstHit>,
 }
@@ -115,7 +117,9 @@ impl PathTracer {
             arrival: Arrival { specular_from_eye: true, lit: None },
             stream,
         });
-        let mut sample = Sample { frame, scratch, wavelengths, radiance: Lanes::ZERO, first: None };
+        let max_depth = if self.max_depth == 0 { u32::MAX } else { self.max_depth };
+        let mut sample =
+            Sample { frame, scratch, wavelengths, max_depth, radiance: Lanes::ZERO, first: None };
         // Light transport is compiled four times over what the scene needs in its inner loop.
         match (frame.needs.scattering, frame.needs.direct_light) {
             (false, false) => self.follow_all::<false, false>(&mut sample),
@@ -128,12 +132,7 @@ impl PathTracer {
 
     fn follow_all<const SCATTERING: bool, const DIRECT: bool>(&self, sample: &mut Sample) {
         while let Some(mut branch) = sample.scratch.branches.pop() {
-            while sample.advance::<SCATTERING, DIRECT>(&mut branch) == Fate::GoesOn {
-                if branch.interactions == self.max_depth && self.max_depth > 0 {
-                    sample.scratch.counters.cut += 1;
-                    break;
-                }
-            }
+            while sample.advance::<SCATTERING, DIRECT>(&mut branch) == Fate::GoesOn {}
         }
     }
 }
@@ -179,6 +178,9 @@ impl Sample<'_> {
     /// The path turns at a particle of the medium.
     fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, flight: &FreeFlight, u: [f32; 4]) -> Fate {
         if branch.throughput.max_element() <= 0.0 {
+            return Fate::Ends;
+        }
+        if self.is_spent(branch) {
             return Fate::Ends;
         }
         let point = branch.origin + branch.direction * flight.distance;
@@ -244,6 +246,13 @@ impl Sample<'_> {
         }
     }
 
+    /// True when the path has had all its interactions: it may still run into a light, but nothing turns it again.
+    pub(super) fn is_spent(&mut self, branch: &Branch) -> bool {
+        let spent = branch.interactions >= self.max_depth;
+        self.scratch.counters.cut += u64::from(spent);
+        spent
+    }
+
     fn cut(&mut self, branch: &Branch) -> Fate {
         let kept = branch.throughput.max_element() / (branch.index_factor * branch.share);
         if branch.arrival.specular_from_eye && kept > 0.999 {
@@ -261,11 +270,11 @@ impl Branch {
         self.interactions += 1;
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
         let late = if self.interactions >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
-        let survival = kept.min(1.0) * late;
+        // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
+        let survival = if kept >= 1.0 { late } else { kept * late };
         if survival >= 1.0 {
             return Fate::GoesOn;
         }
-        // Written so that a throughput that is not a number ends too.
         if u < survival {
             self.throughput /= survival;
             Fate::GoesOn

@@ -32,13 +32,14 @@ impl Sample<'_> {
         let frame = self.frame;
         match frame.surface(hit.triangle) {
             Surface::Interface(pair) if pair.matched => self.pass(branch, hit, pair),
-            Surface::Interface(pair) => self.bend(branch, hit, pair, u),
-            Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
-            Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
             Surface::Emitter { radiance } => {
                 self.arrive(branch, hit, radiance);
                 Fate::Ends
             }
+            _ if self.is_spent(branch) => Fate::Ends,
+            Surface::Interface(pair) => self.bend(branch, hit, pair, u),
+            Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
+            Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
         }
     }
 

@@ -1,0 +1,18 @@
+//! Light transport against closed forms, through the whole renderer, on small scenes made on the spot.
+//!
+//! Exact results are compared with a tolerance for the rounding of f32, estimates with their own standard error: an
+//! estimate fails beyond five of them (a chance of 6e-7 each, were the errors normal; seeds are fixed).
+
+mod common;
+
+mod analytic {
+    mod boundaries;
+    mod environment;
+    mod estimates;
+    mod furnaces;
+    mod lamps;
+    mod limits;
+    mod spectral;
+    mod sunlight;
+    mod walls;
+}

@@ -1,0 +1,117 @@
+//! White furnaces: where nothing absorbs, everything looks like the surroundings.
+
+use glam::DVec3;
+
+use super::estimates::{assert_every_pixel, assert_mean};
+use crate::common::mesh::{TestMesh, cuboid, parallelogram, sphere};
+use crate::common::scene::SceneFolder;
+
+const CAMERA: &str = "[camera]\neye = [1.2, -3.5, 0.8]\ntarget = [0, 0, 0]\nvertical_fov = 40\n\
+                      resolution = [12, 12]\n[sky]\nradiance = 1\n";
+
+#[test]
+fn white_diffuse_surfaces_vanish_in_white_surroundings() {
+    let fin = parallelogram(DVec3::new(-1.0, -1.0, -0.5), DVec3::X * 2.0, DVec3::Z);
+    let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 0.8, 2)).mesh("fin.ply", &fin);
+    for normals in ["flat", "smooth"] {
+        let scene = folder.scene(&format!(
+            "[[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"{normals}\"\n\
+             material = {{ kind = \"diffuse\", reflectance = 1 }}\n\
+             [[surfaces]]\nmesh = \"fin.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 1 }}\n{CAMERA}"
+        ));
+        let picture = scene.render(64, 0);
+        assert_every_pixel(&format!("white diffuse, {normals}"), &picture, DVec3::ONE, 2e-6);
+    }
+}
+
+/// The shading normals of 128 triangles are up to 15 degrees off their planes; reflection and refraction about them
+/// still give each path a weight of 1.
+#[test]
+fn a_smooth_glass_sphere_vanishes_in_white_surroundings() {
+    let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 1.0, 2));
+    for (ior, split) in [(1.5, 1), (1.5, 3), (0.8, 0)] {
+        let scene = folder.scene(&format!(
+            "[media.glass]\nior = {ior}\n[[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"smooth\"\nfront = \"air\"\n\
+             back = \"glass\"\nmaterial = {{ kind = \"dielectric\" }}\n[render]\nsplit = {split}\n{CAMERA}"
+        ));
+        let picture = scene.render(64, 0);
+        assert_every_pixel(&format!("smooth glass {ior}, split {split}"), &picture, DVec3::ONE, 2e-6);
+    }
+}
+
+/// Each of some hundred scatterings multiplies the throughput by a weight of relative error 2^-24 or so, of either sign:
+/// 1e-5 leaves an order of magnitude.
+#[test]
+fn a_medium_that_absorbs_nothing_vanishes_in_white_surroundings() {
+    let slab = cuboid(DVec3::new(-1.0, -0.2, -1.0), DVec3::new(1.0, 0.2, 1.0));
+    let folder = SceneFolder::new().mesh("slab.ply", &slab);
+    for ior in [1.0, 1.33] {
+        for g in [0.0, 0.9, -0.5, 0.9999] {
+            let scene = folder.scene(&format!(
+                "[media.milk]\nior = {ior}\nscattering = 20\nphase = {{ kind = \"henyey-greenstein\", g = {g} }}\n\
+                 [[surfaces]]\nmesh = \"slab.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"milk\"\n\
+                 material = {{ kind = \"dielectric\" }}\n{CAMERA}"
+            ));
+            let picture = scene.render(32, 0);
+            assert_every_pixel(&format!("albedo 1, ior {ior}, g {g}"), &picture, DVec3::ONE, 1e-5);
+        }
+    }
+}
+
+/// Lanes that scatter differently are drawn from one of them; the weights of a white furnace still average to 1.
+#[test]
+fn a_coloured_medium_that_absorbs_nothing_is_white_on_average() {
+    let folder = SceneFolder::new().mesh("cube.ply", &cuboid(DVec3::splat(-0.7), DVec3::splat(0.7)));
+    let scene = folder.scene(&format!(
+        "[media.milk]\nior = 1.33\nscattering = [0.5, 2, 4]\nphase = {{ kind = \"henyey-greenstein\", g = 0.5 }}\n\
+         [[surfaces]]\nmesh = \"cube.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"milk\"\n\
+         material = {{ kind = \"dielectric\" }}\n{CAMERA}"
+    ));
+    assert_mean("coloured albedo 1", &scene.render(4096, 0), DVec3::ONE, 2e-3);
+}
+
+/// The integrating sphere: a share f of the wall emits `radiance` and is black, the rest reflects r. Each point of a
+/// sphere sees equal areas equally, so
+///
+/// ```text
+/// L = r f radiance / (1 - r (1 - f))
+/// ```
+///
+/// and without more than k interactions the terms r^j (1 - f)^(j - 1) of its series with j <= k. The ball of 2048
+/// triangles has chords that are off by 2e-3 in the mean, which allows as much.
+#[test]
+fn an_integrating_sphere_has_the_radiance_of_its_geometric_series() {
+    let ball = sphere(DVec3::ZERO, 1.0, 4).turned();
+    let height = |t: &[u32; 3]| t.iter().map(|&v| ball.positions[v as usize].z).sum::<f64>() / 3.0;
+    let part = |bright: bool| TestMesh {
+        positions: ball.positions.clone(),
+        triangles: ball.triangles.iter().copied().filter(|t| (height(t) > 0.6) == bright).collect(),
+    };
+    let area = |mesh: &TestMesh| -> f64 {
+        let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
+        mesh.triangles.iter().map(corners).map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum()
+    };
+    let (wall, lamp) = (part(false), part(true));
+    let share = area(&lamp) / (area(&lamp) + area(&wall));
+    let folder = SceneFolder::new().mesh("wall.ply", &wall).mesh("lamp.ply", &lamp);
+    let reflectance = DVec3::new(0.9, 0.5, 0.2);
+    for depth in [0, 1, 2, 3] {
+        let scene = folder.scene(&format!(
+            "[[surfaces]]\nmesh = \"wall.ply\"\nnormals = \"flat\"\n\
+             material = {{ kind = \"diffuse\", reflectance = [0.9, 0.5, 0.2] }}\n\
+             [[surfaces]]\nmesh = \"lamp.ply\"\nnormals = \"flat\"\nmaterial = {{ kind = \"emitter\", radiance = 2 }}\n\
+             [camera]\neye = [0, 0.5, 0.3]\ntarget = [0, -0.5, -0.7]\nvertical_fov = 30\nresolution = [8, 8]\n\
+             [render]\nmax_depth = {depth}\n"
+        ));
+        let ratio = reflectance * (1.0 - share);
+        let series = match depth {
+            0 => 1.0 / (1.0 - ratio),
+            _ => (1.0 - ratio.powf(f64::from(depth))) / (1.0 - ratio),
+        };
+        let expected = 2.0 * share * reflectance * series;
+        let (mean, se) = scene.render(1024, 0).mean();
+        println!("integrating sphere, depth {depth}: {mean:.5} +- {se:.5}, expected {expected:.5}");
+        let allowed = 5.0 * se + 2e-3 * expected;
+        assert!((mean - expected).abs().cmple(allowed).all(), "depth {depth}: {mean} is not {expected}");
+    }
+}

@@ -1,0 +1,89 @@
+//! Emitting triangles.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::estimates::assert_mean;
+use crate::common::mesh::{TestMesh, parallelogram};
+use crate::common::scene::SceneFolder;
+
+/// Irradiance at a point with normal `n` from a polygon above its horizon that emits 1 (Lambert): half the sum over the
+/// edges of the angle each subtends times the cosine of n with the normal of the plane through it and the point.
+fn irradiance(point: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
+    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let sum: f64 = edges
+        .map(|(a, b)| {
+            let (a, b) = ((*a - point).normalize(), (*b - point).normalize());
+            a.angle_between(b) * a.cross(b).normalize().dot(n)
+        })
+        .sum();
+    (0.5 * sum).abs()
+}
+
+/// The closed form of a floor point under the corner of a rectangle a x b at height c, as a check on the formula above.
+#[test]
+fn lamberts_formula_gives_the_form_factor_of_a_parallel_rectangle() {
+    let (a, b, c) = (0.7_f64, 1.3_f64, 0.5_f64);
+    let corners = [DVec3::ZERO, DVec3::X * a, DVec3::new(a, b, 0.0), DVec3::Y * b].map(|p| p + DVec3::Z * c);
+    let (x, y) = (a / c, b / c);
+    let term = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();
+    let factor = (term(x, y) + term(y, x)) / (2.0 * PI);
+    assert!((irradiance(DVec3::ZERO, DVec3::Z, &corners) / PI - factor).abs() < 1e-12);
+}
+
+/// A lamp over the origin of a floor that the camera looks at narrowly.
+fn lit_floor(lamp: &TestMesh) -> (crate::common::render::Prepared, DVec3) {
+    let floor = parallelogram(DVec3::new(-9.0, -9.0, 0.0), DVec3::X * 18.0, DVec3::Y * 18.0);
+    let scene = SceneFolder::new().mesh("floor.ply", &floor).mesh("lamp.ply", lamp).scene(
+        "[[surfaces]]\nmesh = \"floor.ply\"\nmaterial = { kind = \"diffuse\", reflectance = [0.5, 0.6, 0.7] }\n\
+         [[surfaces]]\nmesh = \"lamp.ply\"\nnormals = \"flat\"\n\
+         material = { kind = \"emitter\", radiance = [4, 2, 1] }\n\
+         [camera]\neye = [0, -2, 0.2]\ntarget = [0, 0, 0]\nvertical_fov = 0.01\nresolution = [8, 8]\n",
+    );
+    (scene, DVec3::new(0.5, 0.6, 0.7) * DVec3::new(4.0, 2.0, 1.0) / PI)
+}
+
+/// Faces down at the floor, stands upright on it, hangs askew, and a single triangle.
+#[test]
+fn rectangles_light_a_floor_as_their_form_factors_say() {
+    let v = DVec3::new;
+    let cases = [
+        ("parallel", v(-0.2, -0.1, 0.5), v(0.0, 0.8, 0.0), v(1.0, 0.0, 0.0)),
+        ("far", v(-0.2, -0.1, 6.0), v(0.0, 0.8, 0.0), v(1.0, 0.0, 0.0)),
+        ("perpendicular", v(0.4, -0.5, 0.0), v(0.0, 0.0, 1.0), v(0.0, 1.0, 0.0)),
+        ("askew", v(0.3, -0.5, 0.2), v(0.3, 0.1, 0.9), v(0.1, 1.0, -0.1)),
+    ];
+    for (name, corner, edge1, edge2) in cases {
+        let lamp = parallelogram(corner, edge1, edge2);
+        let (scene, scale) = lit_floor(&lamp);
+        let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
+        assert_mean(name, &scene.render(256, 0), expected, 1e-2 * expected.max_element());
+        let (dark, _) = lit_floor(&lamp.turned());
+        assert_eq!(dark.render(64, 0).mean().0, DVec3::ZERO, "{name}: light from the back of the lamp");
+    }
+    let triangle = TestMesh {
+        positions: vec![v(0.0, 0.0, 1.0), v(0.2, 0.9, 1.1), v(1.0, 0.1, 1.2)],
+        triangles: vec![[0, 1, 2]],
+    };
+    let (scene, scale) = lit_floor(&triangle);
+    let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &triangle.positions);
+    assert_mean("triangle", &scene.render(256, 0), expected, 1e-2 * expected.max_element());
+}
+
+/// The balance heuristic changes nothing but the noise.
+#[test]
+fn looking_for_lamps_gives_what_chance_gives_with_less_noise() {
+    let v = DVec3::new;
+    let lamp = parallelogram(v(-0.5, -0.4, 0.3), v(0.0, 0.8, 0.0), v(1.0, 0.0, 0.0));
+    let (mut scene, scale) = lit_floor(&lamp);
+    let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
+    let with = scene.render(1024, 0);
+    scene.frame.needs.direct_light = false;
+    let without = scene.render(1024, 0);
+    assert_mean("looked for", &with, expected, 1e-2);
+    assert_mean("by chance", &without, expected, 2e-2);
+    let ratio = (with.mean().1 / without.mean().1).max_element();
+    println!("noise with over without: {ratio:.3}");
+    assert!(ratio < 0.9, "looking for the lamp does not pay: {ratio}");
+}

@@ -1,0 +1,101 @@
+//! Renders a scene file through the library, without a process of its own.
+
+use std::path::Path;
+
+use floe::driver::job::Job;
+use floe::driver::tiles::{Sampling, render_pixels};
+use floe::film::{Filter, FrameImage};
+use floe::integrator::{AmbientOcclusion, Counters, Integrator, PathTracer};
+use floe::sampling::SampleSeed;
+use floe::scene::assembly::FrameMesh;
+use floe::scene::description::IntegratorKind;
+use floe::scene::frame::Frame;
+use glam::DVec3;
+
+/// A scene whose first frame is ready for rays.
+pub struct Prepared {
+    pub frame: Frame,
+    pub sampling: Sampling,
+}
+
+/// A rendered picture.
+pub struct Rendered {
+    pub image: FrameImage,
+    pub counters: Counters,
+}
+
+/// Opens a scene file and assembles its first frame.
+pub fn prepare(file: &Path) -> Prepared {
+    let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    let task = job.tasks().swap_remove(0);
+    let mesh = task.file.map(|path| {
+        let mesh = floe::mesh::read(&path).unwrap_or_else(|e| panic!("{e}"));
+        FrameMesh { path, mesh }
+    });
+    let assembled = job.world.assemble(task.number, mesh, None).unwrap_or_else(|e| panic!("{e}"));
+    let settings = &job.world.description.render;
+    let path = PathTracer { max_depth: settings.max_depth, split: settings.split };
+    let integrator = match settings.integrator {
+        IntegratorKind::AmbientOcclusion => Integrator::AmbientOcclusion(AmbientOcclusion),
+        _ => Integrator::Path(path),
+    };
+    let sampling = Sampling {
+        integrator,
+        filter: Filter::new(settings.filter),
+        samples: settings.samples,
+        seed: SampleSeed { seed: settings.seed, frame: task.number.millionths() },
+    };
+    Prepared { frame: assembled.frame, sampling }
+}
+
+impl Prepared {
+    /// Renders with so many samples a pixel.
+    ///
+    /// # Panics
+    /// When labels disagree, a radiance is not finite, or a path left a closed fluid without meeting its surface.
+    pub fn render(&self, samples: u32, seed: u64) -> Rendered {
+        let seed = SampleSeed { seed, ..self.sampling.seed };
+        let sampling = Sampling { samples, seed, ..self.sampling.clone() };
+        let (image, counters) = render_pixels(&self.frame, &sampling, &|_, _| ());
+        assert_eq!(counters.label_mismatches, 0, "labels disagree with the path's medium: {counters:?}");
+        assert_eq!(counters.non_finite, 0, "radiance that is not finite: {counters:?}");
+        Rendered { image, counters }
+    }
+}
+
+impl Rendered {
+    /// Linear RGB of a pixel.
+    pub fn rgb(&self, x: u32, y: u32) -> DVec3 {
+        self.image.pixels[(y * self.image.width + x) as usize].rgb.as_dvec3()
+    }
+
+    /// Mean over all pixels, and its standard error from the pixels' own variances.
+    pub fn mean(&self) -> (DVec3, DVec3) {
+        self.block_mean([0, 0], [self.image.width, self.image.height])
+    }
+
+    /// Mean and standard error over the block from `start` of `size` pixels.
+    pub fn block_mean(&self, start: [u32; 2], size: [u32; 2]) -> (DVec3, DVec3) {
+        let (mut sum, mut variance) = (DVec3::ZERO, DVec3::ZERO);
+        for y in start[1]..start[1] + size[1] {
+            for x in start[0]..start[0] + size[0] {
+                let pixel = &self.image.pixels[(y * self.image.width + x) as usize];
+                sum += pixel.rgb.as_dvec3();
+                variance += pixel.variance.as_dvec3();
+            }
+        }
+        let n = f64::from(size[0] * size[1]);
+        (sum / n, DVec3::from_array(variance.to_array().map(f64::sqrt)) / n)
+    }
+
+    /// Greatest deviation of any channel of any pixel from `expected`, with its pixel.
+    pub fn worst_deviation(&self, expected: DVec3) -> (f64, (u32, u32)) {
+        let width = self.image.width;
+        let deviation = |p: &floe::film::Pixel| (p.rgb.as_dvec3() - expected).abs().max_element();
+        let pixels = self.image.pixels.iter().zip(0_u32..);
+        let (worst, at) = pixels
+            .map(|(p, i)| (deviation(p), i))
+            .fold((0.0, 0), |best, this| if this.0 > best.0 { this } else { best });
+        (worst, (at % width, at / width))
+    }
+}

@@ -1,0 +1,43 @@
+//! A scene in a folder that goes away with it.
+
+use std::path::PathBuf;
+
+use super::mesh::TestMesh;
+use super::render::{Prepared, prepare};
+
+/// A temporary folder with a scene file and meshes.
+pub struct SceneFolder {
+    folder: tempfile::TempDir,
+}
+
+impl SceneFolder {
+    /// An empty folder.
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap_or_else(|e| panic!("no temporary folder: {e}")) }
+    }
+
+    /// Adds a mesh.
+    #[must_use]
+    pub fn mesh(self, name: &str, mesh: &TestMesh) -> Self {
+        self.file(name, mesh.ply().as_bytes())
+    }
+
+    /// Adds any file.
+    #[must_use]
+    pub fn file(self, name: &str, bytes: &[u8]) -> Self {
+        let path = self.path(name);
+        std::fs::write(&path, bytes).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        self
+    }
+
+    /// The scene of this text, ready for rays.
+    pub fn scene(&self, toml: &str) -> Prepared {
+        let file = self.path("scene.toml");
+        std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        prepare(&file)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+}
