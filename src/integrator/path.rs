@@ -147,7 +147,7 @@ impl Sample<'_> {
         let u = branch.stream.next4();
         let medium = self.scratch.media[branch.medium.0 as usize];
         let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u[0]));
-        let t_max = flight.map_or(f32::INFINITY, |f| f.distance);
+        let t_max = flight.map_or(f32::INFINITY, |f| f.distance + rounding(branch.origin, f.distance));
         let ray = Ray { origin: branch.origin, direction: branch.direction, t_max };
         self.scratch.counters.rays += 1;
         let hit = self.frame.accel.closest(&ray, Ignored::one(branch.leaves));
@@ -262,6 +262,13 @@ impl Sample<'_> {
         }
         Fate::Ends
     }
+}
+
+/// How far a point at `distance` from `origin` may be off; where a surface is that near, the path meets it.
+///
+/// Without this slack a particle next to a surface comes to lie beyond it, and its path goes on in the wrong medium.
+fn rounding(origin: Vec3, distance: f32) -> f32 {
+    8.0 * f32::EPSILON * (origin.abs().max_element() + distance)
 }
 
 impl Branch {

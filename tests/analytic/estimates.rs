@@ -1,4 +1,4 @@
-//! How a picture is compared with a number.
+//! How a picture is compared with a number, and the number that most of them come from.
 
 use glam::DVec3;
 
@@ -25,4 +25,17 @@ pub fn assert_every_pixel(name: &str, picture: &Rendered, expected: DVec3, toler
     println!("{name}: expected {expected:.6}, worst deviation {worst:.1e}");
     let allowed = tolerance * expected.max_element().max(1.0);
     assert!(worst <= allowed, "{name}: pixel {at:?} is {} and not {expected}", picture.rgb(at.0, at.1));
+}
+
+/// Irradiance at a point with normal `n` from a polygon above its horizon that emits 1 (Lambert): half the sum over the
+/// edges of the angle each subtends times the cosine of n with the normal of the plane through it and the point.
+pub fn polygon_irradiance(point: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
+    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let sum: f64 = edges
+        .map(|(a, b)| {
+            let (a, b) = ((*a - point).normalize(), (*b - point).normalize());
+            a.angle_between(b) * a.cross(b).normalize().dot(n)
+        })
+        .sum();
+    (0.5 * sum).abs()
 }

@@ -24,18 +24,26 @@ fn white_diffuse_surfaces_vanish_in_white_surroundings() {
     }
 }
 
-/// The shading normals of 128 triangles are up to 15 degrees off their planes; reflection and refraction about them
-/// still give each path a weight of 1.
+/// No event about a shading normal loses anything, but a path may be caught: inside, where normals turn against their
+/// planes, total reflection can follow itself for ever. The coarser the mesh the more: 3 in 1000 of the paths on 128
+/// triangles, whose normals are up to 15 degrees off, and next to none on 8192.
 #[test]
 fn a_smooth_glass_sphere_vanishes_in_white_surroundings() {
-    let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 1.0, 2));
-    for (ior, split) in [(1.5, 1), (1.5, 3), (0.8, 0)] {
-        let scene = folder.scene(&format!(
-            "[media.glass]\nior = {ior}\n[[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"smooth\"\nfront = \"air\"\n\
-             back = \"glass\"\nmaterial = {{ kind = \"dielectric\" }}\n[render]\nsplit = {split}\n{CAMERA}"
-        ));
-        let picture = scene.render(64, 0);
-        assert_every_pixel(&format!("smooth glass {ior}, split {split}"), &picture, DVec3::ONE, 2e-6);
+    for (levels, least) in [(2, 0.99), (5, 0.9995)] {
+        let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 1.0, levels));
+        for (ior, split) in [(1.5, 1), (1.5, 3), (0.8, 0)] {
+            let scene = folder.scene(&format!(
+                "[media.glass]\nior = {ior}\n[[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"smooth\"\n\
+                 front = \"air\"\nback = \"glass\"\nmaterial = {{ kind = \"dielectric\" }}\n\
+                 [render]\nsplit = {split}\n{CAMERA}"
+            ));
+            let picture = scene.render(64, 0);
+            let (mean, _) = picture.mean();
+            println!("smooth glass {ior}, {levels} levels, split {split}: {mean:.6}");
+            assert!(mean.x > least && mean.x < 1.0 + 1e-6, "ior {ior}, {levels} levels: {mean}");
+            let brightest = picture.image.pixels.iter().map(|p| p.rgb.x).fold(0.0, f32::max);
+            assert!(brightest < 1.0 + 2e-6, "ior {ior}, {levels} levels: a pixel of {brightest}");
+        }
     }
 }
 
@@ -52,7 +60,9 @@ fn a_medium_that_absorbs_nothing_vanishes_in_white_surroundings() {
                  [[surfaces]]\nmesh = \"slab.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"milk\"\n\
                  material = {{ kind = \"dielectric\" }}\n{CAMERA}"
             ));
-            let picture = scene.render(32, 0);
+            let picture = scene.render(128, 0);
+            let (rays, events) = (picture.counters.rays, picture.counters.label_mismatches);
+            println!("{events} label mismatches in {rays} rays");
             assert_every_pixel(&format!("albedo 1, ior {ior}, g {g}"), &picture, DVec3::ONE, 1e-5);
         }
     }

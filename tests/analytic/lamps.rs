@@ -4,22 +4,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::estimates::assert_mean;
+use super::estimates::{assert_mean, polygon_irradiance};
 use crate::common::mesh::{TestMesh, parallelogram};
 use crate::common::scene::SceneFolder;
-
-/// Irradiance at a point with normal `n` from a polygon above its horizon that emits 1 (Lambert): half the sum over the
-/// edges of the angle each subtends times the cosine of n with the normal of the plane through it and the point.
-fn irradiance(point: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
-    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    let sum: f64 = edges
-        .map(|(a, b)| {
-            let (a, b) = ((*a - point).normalize(), (*b - point).normalize());
-            a.angle_between(b) * a.cross(b).normalize().dot(n)
-        })
-        .sum();
-    (0.5 * sum).abs()
-}
 
 /// The closed form of a floor point under the corner of a rectangle a x b at height c, as a check on the formula above.
 #[test]
@@ -29,7 +16,7 @@ fn lamberts_formula_gives_the_form_factor_of_a_parallel_rectangle() {
     let (x, y) = (a / c, b / c);
     let term = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();
     let factor = (term(x, y) + term(y, x)) / (2.0 * PI);
-    assert!((irradiance(DVec3::ZERO, DVec3::Z, &corners) / PI - factor).abs() < 1e-12);
+    assert!((polygon_irradiance(DVec3::ZERO, DVec3::Z, &corners) / PI - factor).abs() < 1e-12);
 }
 
 /// A lamp over the origin of a floor that the camera looks at narrowly.
@@ -57,7 +44,7 @@ fn rectangles_light_a_floor_as_their_form_factors_say() {
     for (name, corner, edge1, edge2) in cases {
         let lamp = parallelogram(corner, edge1, edge2);
         let (scene, scale) = lit_floor(&lamp);
-        let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
+        let expected = scale * polygon_irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
         assert_mean(name, &scene.render(256, 0), expected, 1e-2 * expected.max_element());
         let (dark, _) = lit_floor(&lamp.turned());
         assert_eq!(dark.render(64, 0).mean().0, DVec3::ZERO, "{name}: light from the back of the lamp");
@@ -67,7 +54,7 @@ fn rectangles_light_a_floor_as_their_form_factors_say() {
         triangles: vec![[0, 1, 2]],
     };
     let (scene, scale) = lit_floor(&triangle);
-    let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &triangle.positions);
+    let expected = scale * polygon_irradiance(DVec3::ZERO, DVec3::Z, &triangle.positions);
     assert_mean("triangle", &scene.render(256, 0), expected, 1e-2 * expected.max_element());
 }
 
@@ -77,7 +64,7 @@ fn looking_for_lamps_gives_what_chance_gives_with_less_noise() {
     let v = DVec3::new;
     let lamp = parallelogram(v(-0.5, -0.4, 0.3), v(0.0, 0.8, 0.0), v(1.0, 0.0, 0.0));
     let (mut scene, scale) = lit_floor(&lamp);
-    let expected = scale * irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
+    let expected = scale * polygon_irradiance(DVec3::ZERO, DVec3::Z, &lamp.positions);
     let with = scene.render(1024, 0);
     scene.frame.needs.direct_light = false;
     let without = scene.render(1024, 0);

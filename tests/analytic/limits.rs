@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::estimates::{assert_every_pixel, assert_mean};
+use super::estimates::{assert_every_pixel, assert_mean, polygon_irradiance};
 use crate::common::mesh::{parallelogram, sphere};
 use crate::common::scene::SceneFolder;
 
@@ -32,20 +32,21 @@ fn nothing_covers_a_convex_body() {
     assert_every_pixel("convex body", &scene.render(64, 0), DVec3::ONE, 0.0);
 }
 
-/// At the distance d from an endless wall of height h the floor sees 1 - (1 - d / sqrt(d^2 + h^2)) / 2 of its hemisphere;
-/// a very high wall leaves a half.
+/// What a wall that stands on the floor covers of the hemisphere is its form factor; a high one covers half.
 #[test]
 fn a_wall_covers_its_part_of_the_hemisphere() {
-    for (height, distance) in [(1.0_f64, 0.5_f64), (1000.0, 0.001)] {
-        let wall = parallelogram(DVec3::new(0.0, -1e4, 0.0), DVec3::Y * 2e4, DVec3::Z * height);
-        let floor = parallelogram(DVec3::new(-1e4, -1e4, 0.0), DVec3::X * 2e4, DVec3::Y * 2e4);
+    for (height, distance) in [(1.0, 0.5), (0.3, 0.5), (20.0, 0.01)] {
+        let wall = parallelogram(DVec3::new(0.0, -20.0, 0.0), DVec3::Y * 40.0, DVec3::Z * height);
+        let floor = parallelogram(DVec3::new(-20.0, -20.0, 0.0), DVec3::X * 40.0, DVec3::Y * 40.0);
         let scene = SceneFolder::new().mesh("floor.ply", &floor).mesh("wall.ply", &wall).scene(&format!(
             "{FLOOR}[[surfaces]]\nmesh = \"wall.ply\"\nmaterial = {{ kind = \"diffuse\" }}\n\
              [render]\nintegrator = \"ambient-occlusion\"\n\
              [camera]\neye = [{distance}, 0, 1]\ntarget = [{distance}, 0, 0]\nup = [0, 1, 0]\n\
              vertical_fov = 0.001\nresolution = [4, 4]\n"
         ));
-        let expected = 1.0 - 0.5 * (1.0 - distance / distance.hypot(height));
-        assert_mean(&format!("wall of {height}"), &scene.render(1024, 0), DVec3::splat(expected), 5e-3);
+        let covered =
+            polygon_irradiance(DVec3::X * distance, DVec3::Z, &wall.positions) / std::f64::consts::PI;
+        let name = format!("wall of {height} m");
+        assert_mean(&name, &scene.render(1024, 0), DVec3::splat(1.0 - covered), 5e-3);
     }
 }

@@ -9,8 +9,8 @@ use crate::common::mesh::{cuboid, parallelogram};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
 
-/// A lamp, a floor and a cube of coloured fluid; `extra` makes it spectral.
-fn scene(extra: &str, fluid: &str, sky: &str) -> Prepared {
+/// A lamp, a floor and a cube of clear fluid; `extra` makes it spectral.
+fn scene(extra: &str) -> Prepared {
     let floor = parallelogram(DVec3::new(-9.0, -9.0, -0.6), DVec3::X * 18.0, DVec3::Y * 18.0);
     let lamp = parallelogram(DVec3::new(-1.0, -1.0, 2.0), DVec3::Y * 2.0, DVec3::X * 2.0);
     SceneFolder::new()
@@ -18,11 +18,11 @@ fn scene(extra: &str, fluid: &str, sky: &str) -> Prepared {
         .mesh("lamp.ply", &lamp)
         .mesh("cube.ply", &cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)))
         .scene(&format!(
-            "[media.fluid]\nior = 1.33\n{fluid}{extra}[[surfaces]]\nmesh = \"floor.ply\"\n\
+            "[media.fluid]\nior = 1.33\n{extra}[[surfaces]]\nmesh = \"floor.ply\"\n\
              material = {{ kind = \"diffuse\", reflectance = [0.7, 0.4, 0.2] }}\n\
-             [[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = {{ kind = \"emitter\", radiance = [2, 2.5, 3] }}\n\
+             [[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = {{ kind = \"emitter\", radiance = 2 }}\n\
              [[surfaces]]\nmesh = \"cube.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"fluid\"\n\
-             material = {{ kind = \"dielectric\" }}\n[sky]\nradiance = {sky}\n\
+             material = {{ kind = \"dielectric\" }}\n[sky]\nradiance = 0.6\n\
              [camera]\neye = [2, -3, 1]\ntarget = [0, 0, 0]\nvertical_fov = 40\nresolution = [24, 18]\n"
         ))
 }
@@ -50,17 +50,17 @@ fn a_grey_furnace_is_white_on_wavelengths() {
     assert!(difference < 0.5, "{mean} is off by Delta E {difference}");
 }
 
-/// A second reflection multiplies spectra and not colours, so the cube is clear and the floor flat: what is left is the
-/// upsampling of floor times lamp.
+/// White lights on a coloured floor: one reflection has the floor's colour on wavelengths too, to the Delta E of 0.025 of
+/// upsampling. Two multiply spectra and not colours, but only what the cube sends back to the floor is reflected twice:
+/// 3 parts in 1000 allow for it.
 #[test]
 fn coloured_surfaces_look_the_same_on_wavelengths() {
-    let rgb = scene("", "", "[0.5, 0.6, 0.8]");
-    let spectral = scene(SPECTRAL, "", "[0.5, 0.6, 0.8]");
+    let rgb = scene("");
+    let spectral = scene(SPECTRAL);
     assert_eq!((rgb.frame.mode, spectral.frame.mode), (LaneMode::Rgb, LaneMode::Spectral));
     let ((a, se_a), (b, se_b)) = (rgb.render(512, 0).mean(), spectral.render(2048, 1).mean());
     println!("RGB {a:.5} +- {se_a:.5}, wavelengths {b:.5} +- {se_b:.5}, Delta E {:.3}", delta_e(a, b));
-    // Floor times lamp as spectra and as RGB differ by the curvature of both: 1 % of these colours.
-    let allowed = 5.0 * (se_a * se_a + se_b * se_b).powf(0.5) + 0.01 * a;
+    let allowed = 5.0 * (se_a * se_a + se_b * se_b).powf(0.5) + 0.003 * a;
     assert!((a - b).abs().cmple(allowed).all(), "{a} became {b}");
 }
 

@@ -29,7 +29,8 @@ pub struct Comparison {
     pub mean: DVec3,
 }
 
-fn folder() -> PathBuf {
+/// Where the scenes are.
+pub fn folder() -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "tests", "data", "reference"].iter().collect()
 }
 

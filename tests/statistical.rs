@@ -1,0 +1,19 @@
+//! Samplers against their densities: chi-square tests, normalisation, mean cosines, reciprocity.
+//!
+//! Seeds are fixed. The significance of the whole file is [`SIGNIFICANCE`], shared evenly among its chi-square tests
+//! (Bonferroni), so that a sound sampler fails with any one seed with a probability of 1e-4.
+
+mod common;
+
+mod statistical {
+    mod lights;
+    mod phase_functions;
+    mod tests_of_fit;
+    mod warps;
+}
+
+/// Probability that sound samplers fail.
+const SIGNIFICANCE: f64 = 1e-4;
+
+/// Upper bound on the number of chi-square tests.
+const TESTS: f64 = 40.0;
