@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::{EyeSample, FirstHit, Scratch};
-use crate::accel::Ignored;
+use crate::accel::{Hit, Ignored};
 use crate::geometry::Ray;
 use crate::optics::medium::{FreeFlight, MediumId};
 use crate::optics::phase::one_minus_cos;
@@ -35,6 +35,9 @@ const LATE_ROULETTE: u32 = 1024;
 const LATE_SURVIVAL: f32 = 0.98;
 /// No path goes on beyond this many interactions.
 pub const HARD_LIMIT: u32 = 65_536;
+
+/// Sheets within a rounding error of each other that a path looks through for the one it has jumped over.
+const MOST_SHEETS: u32 = 4;
 
 /// A path being followed.
 #[derive(Clone, Copy, Debug)]
@@ -150,8 +153,7 @@ impl Sample<'_> {
         let t_max = flight.map_or(f32::INFINITY, |f| f.distance + rounding(branch.origin, f.distance));
         let ray = Ray { origin: branch.origin, direction: branch.direction, t_max };
         self.scratch.counters.rays += 1;
-        let hit = self.frame.accel.closest(&ray, Ignored::one(branch.leaves));
-        match (hit, flight) {
+        match (self.nearest(branch, &ray), flight) {
             (Some(hit), flight) => {
                 branch.throughput *= match flight {
                     Some(flight) => medium.pass_weight(&flight, hit.t),
@@ -173,6 +175,32 @@ impl Sample<'_> {
                 Fate::Ends
             }
         }
+    }
+
+    /// The nearest surface, and none that the start of the ray has jumped over.
+    ///
+    /// A ray starts off its triangle by a rounding error. In the wedge where two sheets meet the next one may be nearer
+    /// than that: then the surface that is found belongs to another medium than the one the path is in. The ray is
+    /// started again a little way back, and the first boundary of the path's medium close by is taken.
+    fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
+        let frame = self.frame;
+        let found = frame.accel.closest(ray, Ignored::one(branch.leaves))?;
+        if branch.leaves == u32::MAX || frame.is_boundary_of(branch.medium, &found) {
+            return Some(found);
+        }
+        let step = 8.0 * rounding(ray.origin, 0.0);
+        let mut back = Ray { origin: ray.at(-step), t_max: found.t, ..*ray };
+        let mut ignored = Ignored::one(branch.leaves);
+        for _ in 0..MOST_SHEETS {
+            self.scratch.counters.rays += 1;
+            let Some(sheet) = frame.accel.closest(&back, ignored) else { break };
+            if frame.is_boundary_of(branch.medium, &sheet) {
+                return Some(sheet);
+            }
+            back.origin = back.at(sheet.t);
+            ignored = Ignored([branch.leaves, sheet.triangle]);
+        }
+        Some(found)
     }
 
     /// The path turns at a particle of the medium.

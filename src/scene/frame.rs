@@ -4,7 +4,7 @@ use super::camera::Camera;
 use super::geometry::Geometry;
 use super::needs::Needs;
 use super::surface::{MediumPair, Surface};
-use crate::accel::{Accel, Ignored};
+use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::light::Lights;
 use crate::optics::medium::{Medium, MediumId};
@@ -58,6 +58,15 @@ impl Frame {
     #[inline]
     pub fn looks_for_lights(&self, id: MediumId) -> bool {
         self.lit[id.0 as usize]
+    }
+
+    /// True when a ray in `medium` can meet what it has hit: an opaque surface, or an interface of that medium.
+    #[inline]
+    pub fn is_boundary_of(&self, medium: MediumId, hit: &Hit) -> bool {
+        match self.surface(hit.triangle) {
+            Surface::Interface(pair) => pair.crossed(hit.from_front).0 == medium,
+            _ => true,
+        }
     }
 
     /// What a triangle is.
