@@ -5,6 +5,11 @@ use std::process::ExitCode;
 use crate::driver::RenderError;
 use crate::driver::error::Blame;
 
+/// The end of the help text.
+pub(super) const HELP: &str = "\
+Exit codes: 0 all is there, 2 usage, 65 bad input data, 66 input missing, 70 internal error,
+73 cannot create or 74 cannot write an output, 78 bad scene file; the greatest of several.";
+
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]

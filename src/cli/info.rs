@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::exit::Exit;
-use crate::driver::job::FrameTask;
+use super::streams::{print, say};
 use crate::driver::{Job, RenderError};
 use crate::mesh;
 use crate::scene::FrameError;
@@ -26,25 +26,24 @@ pub struct InfoArguments {
 
 /// Prints the scene, and what a frame of it needs.
 pub fn run(arguments: &InfoArguments) -> Exit {
-    match report(arguments) {
-        Ok(text) => {
-            print!("{text}");
-            Exit::Complete
-        }
+    let mut text = String::new();
+    match report(arguments, &mut text) {
+        Ok(()) => print(&text),
         Err(error) => {
-            eprintln!("error: {error}");
+            // What was found out before is worth having.
+            print(&text);
+            say(&format!("error: {error}"));
             Exit::from(&error)
         }
     }
 }
 
-fn report(arguments: &InfoArguments) -> Result<String, RenderError> {
+fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderError> {
     let job = Job::open(&arguments.scene)?;
-    let mut text = describe_job(&job);
-    let tasks = job.tasks();
-    let chosen: Vec<&FrameTask> = match &arguments.frames {
-        Some(selection) => tasks.iter().filter(|t| selection.contains(t.number)).collect(),
-        None => tasks.iter().take(1).collect(),
+    *text += &describe_job(&job);
+    let chosen = match &arguments.frames {
+        Some(selection) => job.select(selection)?,
+        None => job.tasks().into_iter().take(1).collect(),
     };
     let mut previous = None;
     for task in chosen {
@@ -55,10 +54,10 @@ fn report(arguments: &InfoArguments) -> Result<String, RenderError> {
             None => None,
         };
         let assembled = job.world.assemble(task.number, mesh, previous.take())?;
-        text += &describe_frame(&task.number.to_string(), &assembled);
+        *text += &describe_frame(&task.number.to_string(), &assembled);
         previous = Some(assembled.frame);
     }
-    Ok(text)
+    Ok(())
 }
 
 fn describe_job(job: &Job) -> String {

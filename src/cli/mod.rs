@@ -1,12 +1,13 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)]
-
 mod exit;
 mod info;
 mod progress;
 mod render;
+mod streams;
+mod summary;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -15,7 +16,7 @@ pub use exit::Exit;
 
 /// Renders folders of simulated fluid interfaces into image sequences.
 #[derive(Debug, Parser)]
-#[command(name = "floe", version, about, max_term_width = 100)]
+#[command(name = "floe", version, about, long_about = None, max_term_width = 100, after_help = exit::HELP)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -31,7 +32,12 @@ enum Command {
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
-    let exit = match Arguments::try_parse() {
+    // The default hook has told where it happened; schedulers need the code of an internal error.
+    std::panic::catch_unwind(dispatch).unwrap_or(Exit::Internal).into()
+}
+
+fn dispatch() -> Exit {
+    match Arguments::try_parse() {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
@@ -39,8 +45,10 @@ pub fn run() -> ExitCode {
         Err(error) => {
             // Help and version go to standard output and are no failure.
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Complete };
-            error.print().map_or(Exit::CannotWrite, |()| exit)
+            match error.print() {
+                Err(failure) if failure.kind() != ErrorKind::BrokenPipe => Exit::CannotWrite,
+                _ => exit,
+            }
         }
-    };
-    exit.into()
+    }
 }

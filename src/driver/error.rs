@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::film::FilmError;
 use crate::scene::FrameError;
 use crate::scene::description::SceneError;
+use crate::scene::domain::DomainError;
 use crate::sequence::SequenceError;
 
 /// What went wrong, for a frame or for the whole job.
@@ -28,8 +29,26 @@ pub enum RenderError {
         /// What was given.
         path: PathBuf,
     },
-    /// A file beside the pictures cannot be written.
-    #[error("{path}: cannot be written: {source}; check that the folder may be written to")]
+    /// The name of the pictures is not that of OpenEXR files.
+    #[error(
+        "the output `{pattern}` does not end with .exr: write for example `{example}` (a PNG is written beside it)"
+    )]
+    NotExr {
+        /// The name, or pattern of names.
+        pattern: String,
+        /// A name that would do.
+        example: String,
+    },
+    /// The ledger cannot be made.
+    #[error("{path}: cannot be created: {source}; check that the folder may be written to")]
+    CannotCreate {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The ledger cannot be written.
+    #[error("{path}: cannot be written: {source}; check the space on the disk")]
     CannotWrite {
         /// The file.
         path: PathBuf,
@@ -82,13 +101,41 @@ impl RenderError {
         match self {
             Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
             Self::Scene(_) => Blame::Configuration,
-            Self::Sequence(SequenceError::NothingFound { .. } | SequenceError::Io { .. }) => Blame::Missing,
-            Self::Sequence(_) => Blame::Configuration,
+            Self::Sequence(error) => blame_of_sequence(error),
+            Self::NotExr { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
+            Self::Frame(FrameError::NoMedium { .. }) => Blame::Configuration,
+            Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),
+            Self::Frame(FrameError::Sequence(error)) => blame_of_sequence(error),
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
-            Self::Film(FilmError::CannotCreate { .. }) => Blame::CannotCreate,
+            Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
             Self::Threads { .. } => Blame::Internal,
         }
+    }
+}
+
+fn blame_of_sequence(error: &SequenceError) -> Blame {
+    match error {
+        SequenceError::NothingFound { .. }
+        | SequenceError::Io { .. }
+        | SequenceError::NoneSelected { .. }
+        | SequenceError::NotThere { .. } => Blame::Missing,
+        SequenceError::DuplicateNumber { .. } | SequenceError::Number { .. } => Blame::Data,
+        SequenceError::SeveralSequences { .. }
+        | SequenceError::Unnumbered { .. }
+        | SequenceError::Pattern { .. }
+        | SequenceError::NoPlace { .. }
+        | SequenceError::Selection { .. } => Blame::Configuration,
+    }
+}
+
+fn blame_of_domain(error: &DomainError) -> Blame {
+    match error {
+        DomainError::Unlabelled { .. } | DomainError::TooLarge { .. } => Blame::Data,
+        DomainError::Box { .. }
+        | DomainError::BottomKept
+        | DomainError::BottomAlone
+        | DomainError::TopExtended => Blame::Configuration,
     }
 }

@@ -5,12 +5,15 @@ use std::path::{Component, Path, PathBuf};
 use glam::DVec3;
 
 use super::error::RenderError;
+use crate::film::write::write_atomically;
 use crate::mesh::{self, RawMesh};
 use crate::scene::FrameError;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
 use crate::scene::world::World;
-use crate::sequence::{FrameFile, FrameNumber, discover, frame_path, output_path};
+use crate::sequence::{
+    FrameFile, FrameNumber, FrameSelection, SequenceError, discover, frame_path, output_path,
+};
 
 /// Name of the scene file in a folder.
 const SCENE_FILE: &str = "scene.toml";
@@ -52,7 +55,7 @@ impl Job {
             None => Vec::new(),
         };
         let placement = match &description.camera.placement {
-            Some(placement) => placement.clone(),
+            Some(placement) => *placement,
             None => framed(&description, &files)?,
         };
         Ok(Self { world: World::new(description, placement)?, files, written_scene, name })
@@ -65,6 +68,18 @@ impl Job {
             return vec![FrameTask { number: first, file: None }];
         }
         self.files.iter().map(|f| FrameTask { number: f.number, file: Some(f.path.clone()) }).collect()
+    }
+
+    /// The frames of a selection, in order.
+    ///
+    /// # Errors
+    /// [`SequenceError::NoneSelected`] when no frame is left.
+    pub fn select(&self, selection: &FrameSelection) -> Result<Vec<FrameTask>, SequenceError> {
+        let mut tasks = self.tasks();
+        let there = |t: &FrameTask| FrameFile { number: t.number, path: t.file.clone().unwrap_or_default() };
+        let chosen = selection.select(&tasks.iter().map(there).collect::<Vec<_>>())?;
+        tasks.retain(|t| chosen.iter().any(|f| f.number == t.number));
+        Ok(tasks)
     }
 
     /// The pattern of the pictures' names, relative to the current directory.
@@ -124,15 +139,7 @@ fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
     labels.dedup();
     let target = file.parent().unwrap_or(Path::new("."));
     let text = default_scene(&relative_path(target, folder), bounds_of(&first), &labels, detect_box(&first));
-    let write = || {
-        std::fs::create_dir_all(target)?;
-        let mut temporary = tempfile::NamedTempFile::new_in(target)?;
-        std::io::Write::write_all(&mut temporary, text.as_bytes())?;
-        temporary.as_file().sync_all()?;
-        temporary.persist(file).map_err(|e| e.error)?;
-        Ok(())
-    };
-    write().map_err(|source| RenderError::CannotWrite { path: file.into(), source })
+    Ok(write_atomically(file, text.as_bytes())?)
 }
 
 /// `to` as seen from the folder `from`, both relative to the current directory; absolute when there is no way.

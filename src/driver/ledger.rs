@@ -123,9 +123,18 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// The ledger beside a picture.
-    pub fn beside(picture: &Path) -> Self {
-        Self { path: picture.with_file_name("ledger.jsonl") }
+    /// The ledger beside a picture, made if it is not there: a folder that cannot be written to is found out before
+    /// anything is rendered.
+    ///
+    /// # Errors
+    /// [`RenderError::CannotCreate`] for the folder or the file.
+    pub fn beside(picture: &Path) -> Result<Self, RenderError> {
+        let ledger = Self { path: picture.with_file_name("ledger.jsonl") };
+        let folder = picture.parent().unwrap_or(Path::new(""));
+        std::fs::create_dir_all(folder)
+            .and_then(|()| ledger.open().map(drop))
+            .map_err(|source| RenderError::CannotCreate { path: ledger.path.clone(), source })?;
+        Ok(ledger)
     }
 
     /// Where it is.
@@ -136,16 +145,17 @@ impl Ledger {
     /// Appends a line in one write.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// [`RenderError::CannotWrite`], such as when the disk is full.
     pub fn append(&self, record: &FrameRecord) -> Result<(), RenderError> {
         let write = || {
             let mut line = serde_json::to_vec(record)?;
             line.push(b'\n');
-            if let Some(folder) = self.path.parent() {
-                std::fs::create_dir_all(folder)?;
-            }
-            std::fs::OpenOptions::new().create(true).append(true).open(&self.path)?.write_all(&line)
+            self.open()?.write_all(&line)
         };
         write().map_err(|source| RenderError::CannotWrite { path: self.path.clone(), source })
+    }
+
+    fn open(&self) -> std::io::Result<std::fs::File> {
+        std::fs::OpenOptions::new().create(true).append(true).open(&self.path)
     }
 }

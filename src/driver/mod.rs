@@ -13,4 +13,4 @@ pub mod tiles;
 pub use error::RenderError;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
-pub use render::{Observer, RenderOptions, RenderReport, render};
+pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};

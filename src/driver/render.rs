@@ -15,7 +15,9 @@ use crate::scene::FrameError;
 use crate::scene::assembly::{Assembled, FrameMesh};
 use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
-use crate::sequence::{FrameNumber, FrameSelection, check_output_pattern, output_path};
+use crate::sequence::{
+    FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps, output_path,
+};
 use crate::spectrum::LaneMode;
 
 /// What the command line may override.
@@ -60,6 +62,8 @@ pub struct RenderReport {
     pub skipped: usize,
     /// From start to end.
     pub seconds: f64,
+    /// Pattern of the pictures' names.
+    pub pattern: String,
     /// The ledger.
     pub ledger: PathBuf,
 }
@@ -73,59 +77,72 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<RenderReport, RenderError> {
-    let tasks = selected(job, options)?;
+    let (tasks, absent) = chosen(job, options)?;
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
-    check_output_pattern(&pattern, tasks.len())?;
+    check_pictures(&pattern, tasks.len())?;
     let pool = thread_pool(options.threads)?;
     let start = Instant::now();
-    let settings = effective(&job.world.description.render, options);
-    let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(&pattern, t.number));
-    let mut session = Session {
-        job,
-        pattern,
-        sampling: sampling_of(&settings),
-        settings,
-        ledger: Ledger::beside(&first_picture),
-        previous: None,
-        observer,
-    };
-    let mut report = RenderReport {
-        frames: Vec::new(),
-        failures: Vec::new(),
-        skipped: 0,
-        seconds: 0.0,
-        ledger: session.ledger.path().into(),
-    };
+    let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     observer.started(tasks.len());
+    if options.frames.is_none() {
+        gaps(&job.files).iter().for_each(|gap| observer.warning(&missing(gap)));
+    }
+    for number in absent {
+        let record = FrameRecord::failed(number.to_string(), None, picture(&pattern, number));
+        session.conclude(number, record, Err(not_there(job, number)));
+    }
     for (i, task) in tasks.iter().enumerate() {
         observer.frame(task.number);
         let (record, outcome) = pool.install(|| session.frame(task));
-        session.ledger.append(&record)?;
-        observer.finished(&record);
-        report.frames.push(record);
-        if let Err(error) = outcome {
-            report.failures.push((task.number, error));
-            if !options.keep_going {
-                report.skipped = tasks.len() - i - 1;
-                break;
-            }
+        let is_done = session.conclude(task.number, record, outcome);
+        if !is_done && !options.keep_going {
+            session.report.skipped = tasks.len() - i - 1;
+            break;
         }
     }
-    report.seconds = start.elapsed().as_secs_f64();
-    Ok(report)
+    session.report.seconds = start.elapsed().as_secs_f64();
+    Ok(session.report)
 }
 
-fn selected(job: &Job, options: &RenderOptions) -> Result<Vec<FrameTask>, RenderError> {
-    let mut tasks = job.tasks();
-    if let Some(selection) = &options.frames {
-        if job.files.is_empty() {
-            tasks.retain(|t| selection.contains(t.number));
-        } else {
-            let chosen = selection.select(&job.files)?;
-            tasks.retain(|t| chosen.iter().any(|f| f.number == t.number));
-        }
+/// The frames to be rendered, and those that were asked for by their number but are not there.
+fn chosen(job: &Job, options: &RenderOptions) -> Result<(Vec<FrameTask>, Vec<FrameNumber>), RenderError> {
+    let Some(selection) = &options.frames else { return Ok((job.tasks(), Vec::new())) };
+    let tasks = job.select(selection)?;
+    let absent = selection.absent(&numbers(job));
+    match absent.first() {
+        Some(&number) if !options.keep_going => Err(not_there(job, number)),
+        _ => Ok((tasks, absent)),
     }
-    Ok(tasks)
+}
+
+fn numbers(job: &Job) -> Vec<FrameNumber> {
+    job.tasks().iter().map(|task| task.number).collect()
+}
+
+fn not_there(job: &Job, number: FrameNumber) -> RenderError {
+    SequenceError::NotThere { number, available: format_numbers(&numbers(job)) }.into()
+}
+
+fn missing(gap: &Gap) -> String {
+    if gap.first == gap.last {
+        format!("frame {gap} is missing in the sequence")
+    } else {
+        format!("frames {gap} are missing in the sequence")
+    }
+}
+
+/// Checks that a pattern can name the pictures of some frames.
+///
+/// # Errors
+/// [`RenderError::NotExr`] and those of [`check_output_pattern`].
+pub fn check_pictures(pattern: &str, frames: usize) -> Result<(), RenderError> {
+    check_output_pattern(pattern, frames)?;
+    let extension = Path::new(pattern).extension();
+    if extension.is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return Ok(());
+    }
+    let example = Path::new(pattern).with_extension("exr").to_string_lossy().into_owned();
+    Err(RenderError::NotExr { pattern: pattern.into(), example })
 }
 
 fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, RenderError> {
@@ -168,20 +185,69 @@ struct Session<'a> {
     settings: RenderDescription,
     sampling: Sampling,
     ledger: Ledger,
+    report: RenderReport,
     /// The frame before, whose hierarchy may be refitted.
     previous: Option<Frame>,
     observer: &'a dyn Observer,
 }
 
-impl Session<'_> {
+impl<'a> Session<'a> {
+    fn new(
+        job: &'a Job,
+        options: &RenderOptions,
+        observer: &'a dyn Observer,
+        pattern: &str,
+        tasks: &[FrameTask],
+    ) -> Result<Self, RenderError> {
+        let settings = effective(&job.world.description.render, options);
+        let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
+        let ledger = Ledger::beside(&first_picture)?;
+        let report = RenderReport {
+            frames: Vec::new(),
+            failures: Vec::new(),
+            skipped: 0,
+            seconds: 0.0,
+            pattern: pattern.into(),
+            ledger: ledger.path().into(),
+        };
+        let sampling = sampling_of(&settings);
+        Ok(Self {
+            job,
+            pattern: pattern.into(),
+            settings,
+            sampling,
+            ledger,
+            report,
+            previous: None,
+            observer,
+        })
+    }
+
+    /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
+    fn conclude(
+        &mut self,
+        number: FrameNumber,
+        mut record: FrameRecord,
+        outcome: Result<(), RenderError>,
+    ) -> bool {
+        let outcome = outcome.inspect_err(|error| record.error = Some(error.to_string()));
+        // What became of the picture is worth more than that the ledger could not be written.
+        let outcome = outcome.and(self.ledger.append(&record));
+        record.error = outcome.as_ref().err().map(ToString::to_string);
+        self.observer.finished(&record);
+        self.report.frames.push(record);
+        let Err(error) = outcome else { return true };
+        self.report.failures.push((number, error));
+        false
+    }
+
     /// Renders one frame; the record is there whatever happens.
     fn frame(&mut self, task: &FrameTask) -> (FrameRecord, Result<(), RenderError>) {
         let output = picture(&self.pattern, task.number);
         let mut record = FrameRecord::failed(task.number.to_string(), task.file.clone(), output);
         let outcome = self.try_frame(task, &mut record);
-        match &outcome {
-            Ok(()) => record.status = Status::Complete,
-            Err(error) => record.error = Some(error.to_string()),
+        if outcome.is_ok() {
+            record.status = Status::Complete;
         }
         (record, outcome)
     }

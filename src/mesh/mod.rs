@@ -11,6 +11,7 @@ pub mod canonical;
 pub mod normals;
 pub mod topology;
 
+mod coincident;
 mod corner_classes;
 pub(crate) mod disjoint;
 mod dsc;

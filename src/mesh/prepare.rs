@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::coincident::merge_coincident;
 use super::error::{Fault, MeshError, Place};
 use super::topology::topology;
 use super::{Interface, RawMesh, Region, weld};
@@ -32,6 +33,11 @@ pub enum MeshWarning {
         before: usize,
         /// How many there are.
         after: usize,
+    },
+    /// Triangles of the same three points were taken as one boundary.
+    Coincident {
+        /// How many were dropped.
+        dropped: usize,
     },
     /// Edges that have a triangle on one side only: the surface has holes or a rim.
     Open {
@@ -63,6 +69,9 @@ impl fmt::Display for MeshWarning {
                 "{dropped} triangles with the same label on both sides (the first: {}) were dropped",
                 region.0
             ),
+            Self::Coincident { dropped } => {
+                write!(f, "{dropped} triangles that lie exactly on others were joined with them")
+            }
             Self::Welded { before, after } => {
                 write!(f, "vertices of the same position were joined: {after} are left of {before}")
             }
@@ -127,6 +136,8 @@ pub fn prepare(
         warnings.extend(inside_out.then_some(MeshWarning::InsideOut));
         mesh.interfaces = Some(vec![interface_of(inside, inside_out); mesh.triangles.len()]);
     }
+    let coincident = merge_coincident(&mut mesh, labelled);
+    warnings.extend((coincident > 0).then_some(MeshWarning::Coincident { dropped: coincident }));
     // Only now: what has no area still joins its neighbours.
     dropped += mesh.retain(|mesh, triangle| !mesh.has_no_area(triangle));
     warnings.extend((dropped > 0).then_some(MeshWarning::Degenerate { dropped }));

@@ -47,7 +47,7 @@ impl World {
     /// When a picture of the sky or a mesh that is the same in every frame cannot be read.
     pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
-        let Placement { eye, target } = description.camera.placement.clone().unwrap_or(placement);
+        let Placement { eye, target } = description.camera.placement.unwrap_or(placement);
         let origin = snapped(eye);
         let view = &description.camera;
         let camera = Camera::new(eye - origin, target - origin, view.up, view.fov, view.resolution);

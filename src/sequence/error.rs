@@ -100,4 +100,14 @@ pub enum SequenceError {
         /// What there is.
         available: String,
     },
+    /// A frame that was asked for by its number is not there.
+    #[error(
+        "frame {number} is not in the sequence, which has {available}: leave it out, or wait until it is written"
+    )]
+    NotThere {
+        /// The frame.
+        number: FrameNumber,
+        /// What there is.
+        available: String,
+    },
 }

@@ -60,6 +60,12 @@ impl FrameSelection {
         }
         Ok(selected)
     }
+
+    /// The single numbers of the selection that are not in a sequence; ranges take what there is.
+    pub fn absent(&self, numbers: &[FrameNumber]) -> Vec<FrameNumber> {
+        let single = self.parts.iter().filter(|part| part.first == part.last).map(|part| part.first);
+        single.filter(|number| !numbers.contains(number)).collect()
+    }
 }
 
 impl Part {
@@ -139,6 +145,13 @@ fn format_run(run: &[FrameNumber]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn single_numbers_are_missed_and_ranges_take_what_there_is() {
+        let numbers = [1, 2, 4].map(|n| FrameNumber::from_integer(n).unwrap());
+        let absent = FrameSelection::parse("1,3,2-9,7").unwrap().absent(&numbers);
+        assert_eq!(format_numbers(&absent), "3,7");
+    }
     use proptest::prelude::*;
 
     fn selected(text: &str, candidates: std::ops::RangeInclusive<i64>) -> Vec<i64> {

@@ -77,7 +77,8 @@ fn a_soup_is_welded() {
 #[test]
 fn closed_surfaces_that_touch_stay_apart() {
     let mut mesh = tetrahedron();
-    mesh.positions.extend(tetrahedron().positions);
+    // They have the point at 1 on the x axis in common.
+    mesh.positions.extend(tetrahedron().positions.iter().map(|p| *p + DVec3::X));
     mesh.triangles.extend(tetrahedron().triangles.iter().map(|triangle| triangle.map(|index| index + 4)));
     let (mesh, warnings) = prepared(mesh);
     assert_eq!((mesh.positions.len(), warnings.len()), (8, 0));

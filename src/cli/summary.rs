@@ -1,0 +1,109 @@
+//! What standard output says at the end of `floe render`.
+
+use std::path::Path;
+
+use crate::driver::{FrameRecord, RenderReport, Status};
+use crate::integrator::Counters;
+use crate::sequence::{FrameNumber, format_numbers};
+
+/// Frames, time, estimated error, rare events, what is left out, and where it all is.
+pub fn summary(report: &RenderReport) -> String {
+    let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
+    let lines = [
+        Some(frames_line(report, &done)),
+        failures_line(report),
+        error_line(&done),
+        events_line(&done),
+        left_out_line(report),
+        places_line(report, &done),
+    ];
+    lines.into_iter().flatten().map(|line| line + "\n").collect()
+}
+
+fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> String {
+    let asked = report.frames.len() + report.skipped;
+    let word = if asked == 1 { "frame" } else { "frames" };
+    let numbers: Vec<FrameNumber> = done.iter().filter_map(|r| r.frame.parse().ok()).collect();
+    let names = if numbers.is_empty() { String::new() } else { format!(" ({})", format_numbers(&numbers)) };
+    let mut line = format!("{} of {asked} {word}{names} in {:.2} s", done.len(), report.seconds);
+    if done.len() > 1 {
+        let each = done.iter().map(|r| r.seconds()).sum::<f64>() / done.len() as f64;
+        line += &format!(", {each:.2} s a frame");
+    }
+    line
+}
+
+fn failures_line(report: &RenderReport) -> Option<String> {
+    let failed: Vec<FrameNumber> = report.failures.iter().map(|(number, _)| *number).collect();
+    if failed.is_empty() {
+        return None;
+    }
+    let mut line = format!("failed: {}", format_numbers(&failed));
+    if report.skipped > 0 {
+        line += &format!("; {} after it not tried (--keep-going renders them)", report.skipped);
+    }
+    Some(line)
+}
+
+/// Root of the mean square over the frames, so that it is the error of the sequence as one picture.
+fn error_line(done: &[&FrameRecord]) -> Option<String> {
+    let worst = done
+        .iter()
+        .filter_map(|r| r.relative_error.map(|e| (e, &r.frame)))
+        .max_by(|a, b| a.0.estimate.total_cmp(&b.0.estimate));
+    let Some((worst, frame)) = worst else {
+        let unknown = "estimated relative error unknown: it takes at least 2 samples a pixel";
+        return (!done.is_empty()).then(|| unknown.into());
+    };
+    let errors: Vec<f64> = done.iter().filter_map(|r| r.relative_error).map(|e| e.estimate).collect();
+    let mean = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    let percent = |part: f64| 100.0 * part;
+    let interval = format!(
+        "{:.2} to {:.2} % at {:.0} % confidence",
+        percent(worst.low),
+        percent(worst.high),
+        percent(worst.confidence)
+    );
+    Some(if errors.len() == 1 {
+        format!("estimated relative error {:.2} % ({interval})", percent(mean))
+    } else {
+        let worst = percent(worst.estimate);
+        format!(
+            "estimated relative error {:.2} %, worst {worst:.2} % in frame {frame} ({interval})",
+            percent(mean)
+        )
+    })
+}
+
+fn events_line(done: &[&FrameRecord]) -> Option<String> {
+    let mut total = Counters::default();
+    done.iter().for_each(|r| total += r.counters);
+    let events: Vec<String> = [
+        (total.label_mismatches, "hits with mismatched labels"),
+        (total.non_finite, "samples that were not finite"),
+        (total.escaped_inside, "paths that left a fluid through a hole"),
+        (total.cut, "paths cut at the depth limit"),
+        (total.trapped, "paths reflected inside for ever"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, what)| format!("{count} {what}"))
+    .collect();
+    (!events.is_empty()).then(|| format!("of {} rays: {}", total.rays, events.join(", ")))
+}
+
+fn left_out_line(report: &RenderReport) -> Option<String> {
+    let mut parts: Vec<&str> = report.frames.iter().flat_map(|r| &r.left_out).map(String::as_str).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    (!parts.is_empty()).then(|| format!("left out: {}", parts.join(", ")))
+}
+
+fn places_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
+    let pictures = match done {
+        [] => return Some(format!("no pictures; ledger {}", report.ledger.display())),
+        [only] => only.output.display(),
+        _ => Path::new(&report.pattern).display(),
+    };
+    Some(format!("pictures {pictures}; ledger {}", report.ledger.display()))
+}
