@@ -3,6 +3,9 @@
 //! Exact results are compared with a tolerance for the rounding of f32, estimates with their own standard error: an
 //! estimate fails beyond five of them (a chance of 6e-7 each, were the errors normal; seeds are fixed).
 
+// Measured numbers, for `--nocapture`.
+#![allow(clippy::print_stdout)]
+
 mod common;
 
 mod analytic {

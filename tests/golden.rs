@@ -1,11 +1,14 @@
 //! Whole pictures against exact results and against another renderer.
 
+// Measured numbers, for `--nocapture`.
+#![allow(clippy::print_stdout)]
+
 mod common;
 
 use std::path::Path;
 
-use common::reference::{blocks, compare, folder, scene, statistics};
-use common::render::Prepared;
+use common::reference::{blocks, compare, folder, scene, statistics, statistics_in};
+use common::render::{Prepared, prepare};
 use floe::geometry::Ray;
 use floe::integrator::Scratch;
 use floe::sampling::SampleStream;
@@ -166,4 +169,23 @@ fn s11_the_underwater_furnace_is_n_squared_or_dark() {
     let interactions = picture.counters.rays as f64 / f64::from(96 * 72 * samples);
     assert!(interactions < 1200.0 * 0.1, "{interactions} rays a sample: paths do not end");
     compare(&picture, &statistics("s11_underwater_furnace")).assert_agrees("s11_underwater_furnace");
+}
+
+/// Every scene with statistics (`NAME.toml`, `NAME.json`) in the folder that FLOE_REFERENCE_SCENES names.
+#[test]
+#[ignore = "takes a folder of further scenes in FLOE_REFERENCE_SCENES"]
+fn further_scenes_agree() {
+    let folder = std::env::var("FLOE_REFERENCE_SCENES").unwrap();
+    let mut scenes: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    scenes.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    scenes.sort();
+    let comparisons = scenes.iter().map(|file| {
+        let start = std::time::Instant::now();
+        let picture = prepare(file).render(512, 0);
+        println!("{}: {:.1} s, {:?}", file.display(), start.elapsed().as_secs_f64(), picture.counters);
+        (file, compare(&picture, &statistics_in(&file.with_extension("json"))))
+    });
+    for (file, comparison) in comparisons.collect::<Vec<_>>() {
+        comparison.assert_agrees(&file.display().to_string());
+    }
 }

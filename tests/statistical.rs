@@ -3,6 +3,9 @@
 //! Seeds are fixed. The significance of the whole file is [`SIGNIFICANCE`], shared evenly among its chi-square tests
 //! (Bonferroni), so that a sound sampler fails with any one seed with a probability of 1e-4.
 
+// Measured numbers, for `--nocapture`.
+#![allow(clippy::print_stdout)]
+
 mod common;
 
 mod statistical {

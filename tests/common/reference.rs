@@ -1,6 +1,6 @@
 //! Scenes with the stored result of another renderer, and the comparison with it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -41,8 +41,12 @@ pub fn scene(name: &str) -> Prepared {
 
 /// What the other renderer made of it.
 pub fn statistics(name: &str) -> Reference {
-    let file = folder().join(format!("{name}.json"));
-    let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    statistics_in(&folder().join(format!("{name}.json")))
+}
+
+/// The statistics in a file.
+pub fn statistics_in(file: &Path) -> Reference {
+    let text = std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
 }
 
