@@ -184,23 +184,25 @@ impl Sample<'_> {
     /// started again a little way back, and the first boundary of the path's medium close by is taken.
     fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
         let frame = self.frame;
-        let found = frame.accel.closest(ray, Ignored::one(branch.leaves))?;
-        if branch.leaves == u32::MAX || frame.is_boundary_of(branch.medium, &found) {
-            return Some(found);
+        let found = frame.accel.closest(ray, Ignored::one(branch.leaves));
+        let ends_before = found.is_none() && ray.t_max.is_finite();
+        if branch.leaves == u32::MAX || ends_before || frame.could_be_next(branch.medium, found.as_ref()) {
+            return found;
         }
+
         let step = 8.0 * rounding(ray.origin, 0.0);
-        let mut back = Ray { origin: ray.at(-step), t_max: found.t, ..*ray };
+        let mut back = Ray { origin: ray.at(-step), t_max: found.map_or(ray.t_max, |hit| hit.t), ..*ray };
         let mut ignored = Ignored::one(branch.leaves);
         for _ in 0..MOST_SHEETS {
             self.scratch.counters.rays += 1;
             let Some(sheet) = frame.accel.closest(&back, ignored) else { break };
-            if frame.is_boundary_of(branch.medium, &sheet) {
+            if frame.could_be_next(branch.medium, Some(&sheet)) {
                 return Some(sheet);
             }
             back.origin = back.at(sheet.t);
             ignored = Ignored([branch.leaves, sheet.triangle]);
         }
-        Some(found)
+        found
     }
 
     /// The path turns at a particle of the medium.
