@@ -1,5 +1,7 @@
 //! The examples that ship with the project are what their descriptions say.
 
+#![allow(clippy::unwrap_used)] // a test that cannot go on fails
+
 use std::path::Path;
 
 use floe::light::Picture;

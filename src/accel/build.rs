@@ -15,7 +15,13 @@ use crate::geometry::triangle::{TrianglePack, triangle_bounds};
 const LEAF_SIZE: usize = 4;
 
 /// Parts of the tree that reinsertion tries to place better.
-const REINSERTION_RATIO: f32 = 0.02;
+const REINSERTION_RATIO: f32 = 0.05;
+
+/// Triangles more than this many times larger than the median have a tree of their own, and so on upwards.
+const SCALE_STEP: f32 = 16.0;
+
+/// Trees that the triangles are spread over, at most.
+const MOST_SCALES: usize = 8;
 
 /// A place for a subtree: the node and the lane that it hangs from.
 struct Slot {
@@ -30,34 +36,58 @@ impl Accel {
             return Self::default();
         }
         let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect();
-        let binary = bvh2_of(&corners);
-        let accel = Self::collapsed(&corners, &binary);
-        if accel.depth() <= MAX_DEPTH { accel } else { Self::balanced(&corners, &binary.primitive_indices) }
+        let scales = by_scale(&corners);
+        let accel = Self::over_scales(&corners, &scales);
+        if accel.depth() <= MAX_DEPTH { accel } else { Self::balanced(&corners, &scales.concat()) }
     }
 
-    fn collapsed(corners: &[[Vec3; 3]], binary: &Bvh2) -> Self {
+    /// A tree for the triangles of each scale, one under the other, the largest on top.
+    fn over_scales(corners: &[[Vec3; 3]], scales: &[Vec<u32>]) -> Self {
         let mut accel = Self { triangles: corners.len(), ..Self::default() };
         accel.nodes.push(Node::EMPTY);
-        let root = if binary.nodes[0].is_leaf() { vec![0] } else { children_of(binary, 0) };
-        let mut open = vec![(root, 0)];
+        let mut top = 0;
+        let mut bounds = around(corners, &scales.concat());
+        accel.bounds = bounds;
+        for (i, ids) in scales.iter().enumerate().rev() {
+            let subtree = bvh2_of(corners, ids);
+            if i == 0 {
+                accel.fill(top, &subtree, corners, ids);
+                break;
+            }
+            let own = accel.nodes.len();
+            accel.nodes.push(Node::EMPTY);
+            accel.hang(&Slot { node: top, lane: 0 }, bounds_of(&subtree.nodes[0].aabb), Child::node(own));
+            accel.fill(own, &subtree, corners, ids);
+            bounds = around(corners, &scales[..i].concat());
+            let below = accel.nodes.len();
+            accel.nodes.push(Node::EMPTY);
+            accel.hang(&Slot { node: top, lane: 1 }, bounds, Child::node(below));
+            top = below;
+        }
+        accel
+    }
+
+    /// Makes an empty node the root of a binary tree over `ids`.
+    fn fill(&mut self, root: usize, binary: &Bvh2, corners: &[[Vec3; 3]], ids: &[u32]) {
+        let members = if binary.nodes[0].is_leaf() { vec![0] } else { children_of(binary, 0) };
+        let mut open = vec![(members, root)];
         while let Some((members, node)) = open.pop() {
             for (lane, &member) in members.iter().enumerate() {
                 let source = &binary.nodes[member];
                 let slot = Slot { node, lane };
                 if source.is_leaf() {
                     let first = source.first_index as usize;
-                    let ids = &binary.primitive_indices[first..first + source.prim_count as usize];
-                    accel.hang_leaf(&slot, corners, ids);
+                    let run = &binary.primitive_indices[first..first + source.prim_count as usize];
+                    let leaf: Vec<u32> = run.iter().map(|&i| ids[i as usize]).collect();
+                    self.hang_leaf(&slot, corners, &leaf);
                 } else {
-                    let index = accel.nodes.len();
-                    accel.nodes.push(Node::EMPTY);
-                    accel.hang(&slot, bounds_of(&source.aabb), Child::node(index));
+                    let index = self.nodes.len();
+                    self.nodes.push(Node::EMPTY);
+                    self.hang(&slot, bounds_of(&source.aabb), Child::node(index));
                     open.push((children_of(binary, member), index));
                 }
             }
         }
-        accel.bounds = around(corners, &binary.primitive_indices);
-        accel
     }
 
     /// A tree that quarters the given order until a leaf's size is reached: depth log4(n) whatever the geometry.
@@ -129,19 +159,41 @@ fn children_of(binary: &Bvh2, node: usize) -> Vec<usize> {
     members
 }
 
-fn bvh2_of(corners: &[[Vec3; 3]]) -> Bvh2 {
-    let boxes: Vec<Aabb> = corners
+/// Triangles of like size, in rising order of size: those of a scene that reaches from ripples to the horizon do not
+/// belong into one tree, whose cost measure would see the ripples as a point.
+fn by_scale(corners: &[[Vec3; 3]]) -> Vec<Vec<u32>> {
+    let extent = |v: &[Vec3; 3]| triangle_bounds(v).size().max_element();
+    let mut extents: Vec<f32> = corners.iter().map(extent).collect();
+    let middle = extents.len() / 2;
+    let median = *extents.select_nth_unstable_by(middle, f32::total_cmp).1;
+    let mut scales: Vec<Vec<u32>> = Vec::new();
+    for (id, v) in corners.iter().enumerate() {
+        let mut scale = 0;
+        let mut limit = median * SCALE_STEP;
+        while extent(v) > limit && limit > 0.0 && scale < MOST_SCALES {
+            limit *= SCALE_STEP;
+            scale += 1;
+        }
+        scales.resize_with(scales.len().max(scale + 1), Vec::new);
+        scales[scale].push(id as u32);
+    }
+    scales.retain(|ids| !ids.is_empty());
+    scales
+}
+
+fn bvh2_of(corners: &[[Vec3; 3]], ids: &[u32]) -> Bvh2 {
+    let boxes: Vec<Aabb> = ids
         .iter()
-        .map(|v| {
-            let b = triangle_bounds(v);
+        .map(|&id| {
+            let b = triangle_bounds(&corners[id as usize]);
             Aabb::new(b.min.into(), b.max.into())
         })
         .collect();
-    let ids = (0..boxes.len() as u32).collect();
+    let order = (0..boxes.len() as u32).collect();
     let builder = PlocBuilder::with_capacity(boxes.len());
-    let mut bvh = { builder }.build(PlocSearchDistance::Medium, &boxes, ids, SortPrecision::U64, 1);
+    let mut bvh = { builder }.build(PlocSearchDistance::Medium, &boxes, order, SortPrecision::U64, 1);
     ReinsertionOptimizer::default().run(&mut bvh, REINSERTION_RATIO, None);
-    collapse(&mut bvh, LEAF_SIZE as u32, 1.0);
+    collapse(&mut bvh, LEAF_SIZE as u32, 3.0);
     bvh
 }
 
