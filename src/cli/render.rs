@@ -19,7 +19,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "RANGE", value_parser = FrameSelection::parse, allow_hyphen_values = true)]
     frames: Option<FrameSelection>,
     /// Name of the pictures: shot.exr for one, shots/frame_####.exr (also %04d, $F4) for several
-    /// [default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder]
+    /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
     #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
     output: Option<String>,
     /// Samples a pixel [default: render.samples of the scene]
