@@ -13,9 +13,9 @@ const SKY: (usize, usize) = (128, 64);
 fn iceberg_sky(direction: Vec3) -> Vec3 {
     let zenith = Vec3::new(0.17, 0.35, 0.72);
     let horizon = Vec3::new(0.70, 0.84, 1.00);
-    let glow = Vec3::new(2.2, 1.8, 1.3);
+    let glow = Vec3::new(1.5, 1.25, 0.95);
     let towards_sun = Vec3::new(-0.85, -0.35, 0.60).normalize();
-    let lobe = (0.5 + 0.5 * direction.dot(towards_sun)).powi(7);
+    let lobe = (0.5 + 0.5 * direction.dot(towards_sun)).powi(5);
     // Below the horizon, where the sea hides it, the sky goes on as it is there: texels straddle the horizon.
     horizon.lerp(zenith, direction.z.max(0.0).sqrt()) + glow * lobe
 }

@@ -1,0 +1,30 @@
+//! What the README says is true of the code.
+
+use std::path::Path;
+
+use floe::scene::description::SceneDescription;
+
+const README: &str = include_str!("../README.md");
+
+#[test]
+fn the_scene_file_of_the_readme_parses() {
+    let text = README.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
+    let text = text.unwrap_or_else(|| panic!("the README has no scene file"));
+    let scene = SceneDescription::parse(text, Path::new("README.md"));
+    assert!(scene.is_ok(), "{}", scene.unwrap_err());
+}
+
+#[test]
+fn the_test_command_of_the_readme_is_what_the_checks_run() {
+    let command = "cargo test --release";
+    assert!(README.contains(command));
+    assert!(include_str!("../.ci/run").lines().any(|line| line == command));
+}
+
+#[test]
+fn every_file_that_the_readme_names_is_there() {
+    let pictures = README.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    for path in pictures.chain(["sequences/iceberg", "LICENSE-MIT", "LICENSE-APACHE", "src/references.md"]) {
+        assert!(Path::new(path).exists(), "{path}");
+    }
+}
