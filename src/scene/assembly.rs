@@ -294,8 +294,8 @@ impl<'a> Assembly<'a> {
                 _ => None,
             };
         let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
-        let needs = self.needs(&lights, camera_medium);
         let lit = self.lit(&lights);
+        let needs = self.needs(&lights, &lit, camera_medium);
         Assembled {
             frame: Frame {
                 mode: world.mode,
@@ -329,21 +329,22 @@ impl<'a> Assembly<'a> {
         if self.emitters.is_empty() { None } else { AreaLights::new(triangles.collect()) }
     }
 
-    fn needs(&self, lights: &Lights, camera_medium: MediumId) -> Needs {
+    fn needs(&self, lights: &Lights, lit: &[bool], camera_medium: MediumId) -> Needs {
         let mut used = vec![false; self.world.media.len()];
         used[camera_medium.0 as usize] = true;
         for pair in self.pairs.keys() {
             used[pair.front.0 as usize] = true;
             used[pair.back.0 as usize] = true;
         }
-        let in_use = || self.world.media.iter().zip(&used).filter(|(_, used)| **used).map(|(m, _)| m);
-        let scattering = in_use().any(|m| !m.sigma_s.is_zero());
+        let in_use = || self.world.media.iter().enumerate().filter(|(i, _)| used[*i]);
+        let scattering = in_use().any(|(_, m)| !m.sigma_s.is_zero());
+        let lit_scattering = in_use().any(|(i, m)| lit[i] && !m.sigma_s.is_zero());
         let diffuse = self.surfaces.iter().any(|s| matches!(s, Surface::Diffuse { .. }));
         Needs {
             scattering,
-            direct_light: lights.are_sampled() && (scattering || diffuse),
+            direct_light: lights.are_sampled() && (lit_scattering || diffuse),
             matched_interfaces: self.pairs.keys().any(|p| p.matched),
-            attenuation: scattering || in_use().any(|m| !m.sigma_a.is_zero()),
+            attenuation: scattering || in_use().any(|(_, m)| !m.sigma_a.is_zero()),
             spectral: self.world.mode == crate::spectrum::LaneMode::Spectral,
             diffuse,
             sun_behind_interface: lights.sun.is_some() && self.pairs.keys().any(|p| !p.matched),
