@@ -139,6 +139,10 @@ impl<'a> Assembly<'a> {
 
     fn extend_region(&mut self, region: Region, path: &Path) -> Result<(), FrameError> {
         let id = self.world.medium_of_region(region, path)?;
+        if id == MediumId(0) {
+            // A fluid that is told to be what is outside anyway: there is the sky, not the dark of a sea.
+            return Ok(());
+        }
         self.endless[id.0 as usize] = true;
         let medium = &self.world.media[id.0 as usize];
         if medium.sigma_a.is_zero() && medium.sigma_s.is_zero() {

@@ -146,3 +146,15 @@ fn the_extension_is_water_too() {
         assert_mean(&format!("eye {eye} to {target}"), &scene.render(256, 0), DVec3::splat(expected), 1e-3);
     }
 }
+
+/// A fluid whose label is given the outside's medium is not there, and neither is its darkness.
+#[test]
+fn an_extended_region_of_the_outside_is_the_sky() {
+    let mesh = cuboid(DVec3::splat(-1.0), DVec3::new(1.0, 1.0, 0.3));
+    let scene = SceneFolder::new().mesh("box_0001.ply", &mesh).scene(
+        "[frames]\npath = \"box_####.ply\"\n[regions]\n0 = \"air\"\n1 = \"air\"\n\
+         [domain]\nbox = [[-1, -1, -1], [1, 1, 1]]\nwalls = { sides = \"extend\" }\n[sky]\nradiance = 1\n\
+         [camera]\neye = [0, 0, 2]\ntarget = [1, 0, 2]\nvertical_fov = 60\nresolution = [4, 4]\n",
+    );
+    assert_every_pixel("no sea", &scene.render(4, 0), DVec3::ONE, 0.0);
+}
