@@ -10,7 +10,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 
 use super::{LightSample, Picture};
-use crate::geometry::elementary::{acos, atan2, sin_cos};
+use crate::geometry::elementary::{atan2, sin_cos};
 use crate::sampling::Distribution2d;
 use crate::spectrum::light_primaries::radiance_lanes;
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths};
@@ -77,9 +77,7 @@ impl Environment {
             return 0.0;
         };
         let point = image.square(direction);
-        let cos = direction.dot(image.axes[2]);
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        solid_angle_density(distribution.pdf(point), sin).unwrap_or(0.0)
+        solid_angle_density(distribution.pdf(point), image.polar(direction)[0]).unwrap_or(0.0)
     }
 }
 
@@ -91,9 +89,20 @@ fn solid_angle_density(density: f32, sin: f32) -> Option<f32> {
 impl ImageEnvironment {
     /// Where a direction lies on the picture, both in [0, 1).
     fn square(&self, direction: Vec3) -> [f32; 2] {
-        let [x, y, z] = self.axes.map(|axis| direction.dot(axis));
+        let [x, y] = [0, 1].map(|axis| direction.dot(self.axes[axis]));
+        let [sin, cos] = self.polar(direction);
         let below_one = 1.0 - f32::EPSILON * 0.5;
-        [(0.5 + 0.5 * FRAC_1_PI * atan2(y, x)).clamp(0.0, below_one), (acos(z) * FRAC_1_PI).min(below_one)]
+        [
+            (0.5 + 0.5 * FRAC_1_PI * atan2(y, x)).clamp(0.0, below_one),
+            (atan2(sin, cos) * FRAC_1_PI).min(below_one),
+        ]
+    }
+
+    /// Sine and cosine of the polar angle; the sine from the other two axes, since near the poles the cosine has no
+    /// digits of it.
+    fn polar(&self, direction: Vec3) -> [f32; 2] {
+        let [x, y, z] = self.axes.map(|axis| direction.dot(axis));
+        [(x * x + y * y).sqrt(), z]
     }
 
     fn radiance(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
@@ -132,4 +141,29 @@ fn distribution_of(picture: &Picture) -> Option<Distribution2d> {
         }
     }
     Distribution2d::new(width, &weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture with all its light around the zenith: the density that the path's side of the balance heuristic asks
+    /// for is that of the sample, however near the pole it is.
+    #[test]
+    fn near_the_poles_the_density_is_that_of_the_samples() {
+        let (width, height) = (4, 4096);
+        let texels = (0..width * height).map(|i| Vec3::splat(if i < width { 1.0 } else { 0.0 })).collect();
+        let picture = Picture { width, height, texels };
+        for up in [Vec3::Z, Vec3::Y, Vec3::NEG_X] {
+            let sky = Environment::image(picture.clone(), up, LaneMode::Rgb);
+            for i in 1..1000 {
+                let u = [(i * 617 % 1000) as f32 / 1000.0, i as f32 / 1000.0];
+                let light = sky.sample(u, &Wavelengths::RGB).unwrap();
+                let back = sky.pdf_w(light.wi);
+                // A sample on the border of two rows may be found in the other.
+                let is_border = (light.wi.cross(up).length() * height as f32 / PI).fract().min(1.0) < 1e-3;
+                assert!(is_border || (back / light.pdf_w - 1.0).abs() < 1e-5, "{back} {}", light.pdf_w);
+            }
+        }
+    }
 }
