@@ -87,15 +87,19 @@ fn still_mesh(directory: &Path, name: &str) -> Result<Option<RawMesh>, FrameErro
     if has_place(name) { Ok(None) } else { Ok(Some(mesh::read(&directory.join(name))?)) }
 }
 
-/// Coordinates are exact to f32 relative to this point: near the eye, on a grid of 1/256 of its distance from zero,
-/// so that coordinates of like size keep their digits when it is subtracted.
+/// Metres. Far from zero a grid that went on growing would leave the eye kilometres from the origin, and with it all
+/// that it sees on steps of millimetres.
+const COARSEST_GRID: f64 = 0.125;
+
+/// Coordinates are exact to f32 relative to this point: near the eye, on a grid of 1/256 of its distance from zero
+/// or of [`COARSEST_GRID`], so that coordinates of like size keep their digits when it is subtracted.
 fn snapped(eye: DVec3) -> DVec3 {
     let size = eye.abs().max_element();
     if size == 0.0 {
         return DVec3::ZERO;
     }
     let (_, exponent) = libm::frexp(size);
-    let grid = libm::ldexp(1.0, exponent - 8);
+    let grid = libm::ldexp(1.0, exponent - 8).min(COARSEST_GRID);
     (eye / grid).round() * grid
 }
 
@@ -179,13 +183,13 @@ mod tests {
 
     #[test]
     fn the_origin_is_near_the_eye_and_on_a_grid_of_a_power_of_two() {
-        for eye in [DVec3::new(1.1, 2.3, -2.3), DVec3::new(500_000.37, 4_000_000.9, 31.5), DVec3::splat(1e-5)]
-        {
+        let surveyed = DVec3::new(500_000.37, 4_000_000.9, 31.5);
+        for eye in [DVec3::new(1.1, 2.3, -2.3), surveyed, DVec3::splat(1e7 + 0.3), DVec3::splat(1e-5)] {
             let origin = snapped(eye);
             let size = eye.abs().max_element();
-            assert!((eye - origin).abs().max_element() <= size / 256.0);
-            // Nine bits at most: subtracting it from a float of like size is exact.
-            let bits = origin / libm::ldexp(1.0, libm::frexp(size).1 - 8);
+            assert!((eye - origin).abs().max_element() <= (size / 256.0).min(0.0625));
+            // On the grid, so that the difference to a float of like size is a float.
+            let bits = origin / libm::ldexp(1.0, libm::frexp(size).1 - 8).min(COARSEST_GRID);
             assert_eq!(bits, bits.round());
         }
         assert_eq!(snapped(DVec3::ZERO), DVec3::ZERO);
