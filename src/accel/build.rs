@@ -170,7 +170,7 @@ fn by_scale(corners: &[[Vec3; 3]]) -> Vec<Vec<u32>> {
     for (id, v) in corners.iter().enumerate() {
         let mut scale = 0;
         let mut limit = median * SCALE_STEP;
-        while extent(v) > limit && limit > 0.0 && scale < MOST_SCALES {
+        while extent(v) > limit && limit > 0.0 && scale + 1 < MOST_SCALES {
             limit *= SCALE_STEP;
             scale += 1;
         }
