@@ -25,11 +25,11 @@ use crate::spectrum::{Lanes, Wavelengths};
 pub struct EyeSample {
     /// Radiance on the lanes of the sample's wavelengths.
     pub radiance: Lanes,
-    /// The first surface that the eye ray meets; `None` when it escapes.
+    /// The first surface or particle that the eye ray meets; `None` when it escapes.
     pub first: Option<FirstHit>,
 }
 
-/// The first surface that an eye ray meets (index-matched boundaries are looked through).
+/// The first surface or particle that an eye ray meets (index-matched boundaries are looked through).
 #[derive(Clone, Copy, Debug)]
 pub struct FirstHit {
     /// Distance along the ray in metres.

@@ -214,9 +214,9 @@ impl Sample<'_> {
             return Fate::Ends;
         }
         let point = branch.origin + branch.direction * flight.distance;
-        if branch.steps == 1 {
+        if branch.interactions == 0 && self.first.is_none() {
             self.first = Some(FirstHit {
-                distance: flight.distance,
+                distance: (point - self.frame.camera.eye()).length(),
                 position: point,
                 normal: -branch.direction,
                 albedo: Lanes::ONE,

@@ -117,3 +117,17 @@ fn the_camera_knows_which_fluid_it_is_in() {
         assert_every_pixel(&format!("eye at {eye}"), &picture, DVec3::splat(n * n), 2e-6);
     }
 }
+
+/// A dense cloud in an index-matched box hides the sky as fog around the eye does: alpha is 1, depth that of the particles.
+#[test]
+fn a_cloud_behind_a_null_boundary_covers_the_sky() {
+    let scene = SceneFolder::new().mesh("box.ply", &cuboid(DVec3::splat(-1.0), DVec3::ONE)).scene(
+        "[media.cloud]\nscattering = 100\n[[surfaces]]\nmesh = \"box.ply\"\nfront = \"air\"\nback = \"cloud\"\n\
+         material = { kind = \"null\" }\n[sky]\nradiance = 1\n\
+         [camera]\neye = [0, -5, 0]\ntarget = [0, 0, 0]\nvertical_fov = 1\nresolution = [4, 4]\n",
+    );
+    for pixel in scene.render(16, 0).image.pixels {
+        assert_eq!(pixel.alpha, 1.0);
+        assert!((4.0..4.2).contains(&pixel.depth), "{}", pixel.depth);
+    }
+}
