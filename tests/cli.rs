@@ -115,6 +115,7 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "accel_bytes",
         "build_seconds",
         "cut",
+        "depth_limited",
         "escaped_inside",
         "file",
         "frame",

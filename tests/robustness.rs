@@ -284,7 +284,7 @@ fn extreme_settings_give_finite_pictures() {
 #[test]
 fn depth_1_cuts_paths_and_counts_them() {
     let (record, _) = picture("[render]\nsamples = 4\nmax_depth = 1\n", &water(cube()));
-    assert!(record.counters.cut > 0);
+    assert!(record.counters.depth_limited > 0 && record.counters.cut == 0);
 }
 
 #[test]

@@ -82,7 +82,8 @@ fn events_line(done: &[&FrameRecord]) -> Option<String> {
         (total.label_mismatches, "hits with mismatched labels"),
         (total.non_finite, "samples that were not finite"),
         (total.escaped_inside, "paths that left a fluid through a hole"),
-        (total.cut, "paths cut at the depth limit"),
+        (total.depth_limited, "paths ended by max_depth"),
+        (total.cut, "paths cut at the hard limit of interactions"),
         (total.trapped, "paths reflected inside for ever"),
     ]
     .into_iter()

@@ -17,6 +17,8 @@ pub struct Counters {
     pub non_finite: u64,
     /// Paths that met nothing although they were inside a fluid that ends somewhere.
     pub escaped_inside: u64,
+    /// Paths ended by the scene's `max_depth`: the picture lacks their light, as was asked for.
+    pub depth_limited: u64,
     /// Paths cut at the hard limit of interactions.
     pub cut: u64,
     /// Loss-free specular chains (total internal reflection for ever) that ended at the hard limit.
@@ -43,6 +45,7 @@ impl AddAssign for Counters {
         self.label_mismatches += other.label_mismatches;
         self.non_finite += other.non_finite;
         self.escaped_inside += other.escaped_inside;
+        self.depth_limited += other.depth_limited;
         self.cut += other.cut;
         self.trapped += other.trapped;
     }

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use super::path::Sample;
+use super::path::{HARD_LIMIT, Sample};
 use crate::accel::Ignored;
 use crate::geometry::Ray;
 use crate::light::{LightSample, balance};
@@ -48,7 +48,7 @@ impl Sample<'_> {
         }
         if let Some(area) = &lights.area {
             let v = stream.next4();
-            if let Some(light) = area.sample(receiver.position, [v[0], v[1]], self.wavelengths) {
+            if let Some(light) = area.sample(receiver.position, [v[0], v[1], v[2]], self.wavelengths) {
                 sum += self.contribution(receiver, &response, &light, |pdf_w| balance(light.pdf_w, pdf_w));
             }
         }
@@ -81,7 +81,7 @@ impl Sample<'_> {
         let mut ignored = Ignored([receiver.leaves, source]);
         let mut medium = receiver.medium;
         let mut visible = Lanes::ONE;
-        loop {
+        for _ in 0..HARD_LIMIT {
             self.scratch.counters.shadow_rays += 1;
             let coefficients = self.scratch.media[medium.0 as usize];
             if !self.frame.needs.matched_interfaces {
@@ -110,6 +110,7 @@ impl Sample<'_> {
             ray.t_max -= hit.t;
             ignored = Ignored([hit.triangle, source]);
         }
+        Lanes::ZERO
     }
 
     /// True when the ray runs to infinity in a medium without end.

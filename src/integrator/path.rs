@@ -279,7 +279,7 @@ impl Sample<'_> {
     /// True when the path has had all its interactions: it may still run into a light, but nothing turns it again.
     pub(super) fn is_spent(&mut self, branch: &Branch) -> bool {
         let spent = branch.interactions >= self.max_depth;
-        self.scratch.counters.cut += u64::from(spent);
+        self.scratch.counters.depth_limited += u64::from(spent);
         spent
     }
 

@@ -62,11 +62,12 @@ impl AreaLights {
         Some(Self { triangles, by_id, choice })
     }
 
-    /// A point on a light, seen from `from`; `None` where it shows its dark side.
-    pub fn sample(&self, from: Vec3, u: [f32; 2], wavelengths: &Wavelengths) -> Option<LightSample> {
-        let (entry, rest) = self.choice.sample(u[0]);
+    /// A point on a light, seen from `from`, the triangle by the third number; `None` where it shows its dark side.
+    pub fn sample(&self, from: Vec3, u: [f32; 3], wavelengths: &Wavelengths) -> Option<LightSample> {
+        // The choice has a number of its own: among a million triangles its remainder would have no digits left.
+        let (entry, _) = self.choice.sample(u[2]);
         let emitter = &self.triangles[entry];
-        let b = warp::triangle([rest, u[1]]);
+        let b = warp::triangle([u[0], u[1]]);
         let point = emitter.vertices[0] * b.x + emitter.vertices[1] * b.y + emitter.vertices[2] * b.z;
         let towards = point - from;
         let distance = towards.length();

@@ -23,7 +23,7 @@ pub struct Sun {
 }
 
 impl Sun {
-    /// A disc of `angular_diameter` degrees (0 < d <= 180) around the unit vector `direction`.
+    /// A disc of `angular_diameter` degrees (0 < d < 180) around the unit vector `direction`.
     pub fn new(direction: Vec3, angular_diameter: f32, irradiance: LaneCurve) -> Self {
         let alpha = 0.5 * angular_diameter.to_radians();
         let half_sine = sin_cos(0.5 * alpha).0;

@@ -203,9 +203,12 @@ fn directions_towards_lamps_follow_their_density() {
     }
     let mut coarse = coarse(&cells);
     coarse.push(1.0 - share);
-    assert_fits("lamps", 220, &coarse, |u| match lamps.sample(Vec3::ZERO, u, &wavelengths()) {
-        Some(LightSample { wi, .. }) => cell(wi) / COLUMNS / 8 * 4 + cell(wi) % COLUMNS / 6,
-        None => 12,
+    let mut choice = SplitMix(221);
+    assert_fits("lamps", 220, &coarse, |[u, v]| {
+        match lamps.sample(Vec3::ZERO, [u, v, choice.pair()[0]], &wavelengths()) {
+            Some(LightSample { wi, .. }) => cell(wi) / COLUMNS / 8 * 4 + cell(wi) % COLUMNS / 6,
+            None => 12,
+        }
     });
 }
 
@@ -215,7 +218,8 @@ fn lamps_state_the_density_of_their_samples() {
     let mut random = SplitMix(6);
     for _ in 0..5000 {
         let from = warp::sphere(random.pair()) * 0.1;
-        let Some(sample) = lamps.sample(from, random.pair(), &wavelengths()) else { continue };
+        let ([u, v], [choice, _]) = (random.pair(), random.pair());
+        let Some(sample) = lamps.sample(from, [u, v, choice], &wavelengths()) else { continue };
         let id = sample.triangle.unwrap_or(u32::MAX);
         assert_eq!(sample.pdf_w, lamps.pdf_w(id, sample.wi, sample.distance));
         assert!((sample.wi.length() - 1.0).abs() < 1e-6 && sample.distance > 0.0);
