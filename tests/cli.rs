@@ -234,6 +234,17 @@ fn outputs_that_cannot_be_are_usage_errors() {
 }
 
 #[test]
+fn a_scene_written_for_another_folder_of_the_same_name_is_refused() {
+    let folder = Folder::new();
+    let mesh = std::fs::read(shipped_frame(0)).unwrap();
+    folder.write("a/frames/f_0001.ply", &mesh);
+    folder.write("b/frames/f_0001.ply", &mesh);
+    floe(&folder, &["info", "a/frames"]).ended(0);
+    floe(&folder, &["info", "a/frames"]).ended(0);
+    floe(&folder, &["info", "b/frames"]).ended(78).says(&["out/frames/scene.toml", "a/frames", "b/frames"]);
+}
+
+#[test]
 fn a_folder_of_frames_gets_a_scene_once() {
     let folder = Folder::new();
     folder.write("drops/drop.7.ply", small::ply(&labelled(cube(), 0, 2)));

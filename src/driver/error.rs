@@ -29,6 +29,19 @@ pub enum RenderError {
         /// What was given.
         path: PathBuf,
     },
+    /// The scene that was written for a folder of this name is about another folder.
+    #[error(
+        "{scene}: its frames.path is `{frames}`, not in {folder}: it was written for another folder of the same name; \
+         put a scene.toml into {folder}, or move {scene} away, or run in another folder"
+    )]
+    OtherFolder {
+        /// The scene file beside the output.
+        scene: PathBuf,
+        /// What it says of its frames.
+        frames: String,
+        /// The folder that was given.
+        folder: PathBuf,
+    },
     /// The name of the pictures is not that of OpenEXR files.
     #[error(
         "the output `{pattern}` does not end with .exr: write for example `{example}` (a PNG is written beside it)"
@@ -58,7 +71,7 @@ pub enum RenderError {
     /// Labels disagree so often that the picture would be wrong.
     #[error(
         "{path}: at {mismatches} of {rays} rays the surface belongs to another medium than the one the ray was in; \
-         the mesh is open, overlaps itself, or its labels are wrong (the warnings above name places); no picture is written"
+         the mesh is open, overlaps itself, or its labels are wrong (a warning for this frame, if there is one, names the place); no picture is written"
     )]
     Mismatches {
         /// The frame's file.
@@ -102,7 +115,7 @@ impl RenderError {
             Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
             Self::Scene(_) => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
-            Self::NotExr { .. } => Blame::Configuration,
+            Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(FrameError::NoMedium { .. }) => Blame::Configuration,
             Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),

@@ -116,10 +116,22 @@ fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderE
     }
     let beside = Path::new("out").join(&name).join(SCENE_FILE);
     if beside.is_file() {
+        check_folder(&beside, path)?;
         return Ok((beside, None, name));
     }
     write_default_scene(path, &beside)?;
     Ok((beside.clone(), Some(beside), name))
+}
+
+/// Checks that a scene that was written earlier is about this folder: two folders may have the same name.
+fn check_folder(scene: &Path, folder: &Path) -> Result<(), RenderError> {
+    let description = SceneDescription::from_file(scene)?;
+    let Some(frames) = description.frames else { return Ok(()) };
+    let is_inside = normalised(&description.directory.join(&frames.path)).starts_with(normalised(folder));
+    if is_inside {
+        return Ok(());
+    }
+    Err(RenderError::OtherFolder { scene: scene.into(), frames: frames.path, folder: folder.into() })
 }
 
 fn folder_name(folder: &Path) -> String {
