@@ -23,6 +23,12 @@ pub enum RenderError {
     /// The picture could not be written.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// A scene file is text, and the name of the folder is not.
+    #[error("{}: the name of this folder is not UTF-8, so no scene file can be written for it; rename it", path.display())]
+    NotUtf8 {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Neither a scene file nor a folder.
     #[error("{path}: no such file or folder; give a scene file or a folder with frames")]
     NotFound {
@@ -113,7 +119,7 @@ impl RenderError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
-            Self::Scene(_) => Blame::Configuration,
+            Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
             Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,

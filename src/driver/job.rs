@@ -150,12 +150,14 @@ fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
     labels.sort_unstable();
     labels.dedup();
     let target = file.parent().unwrap_or(Path::new("."));
-    let text = default_scene(&relative_path(target, folder), bounds_of(&first), &labels, detect_box(&first));
+    let frames = relative_path(target, folder);
+    let name = frames.to_str().ok_or_else(|| RenderError::NotUtf8 { path: folder.into() })?;
+    let text = default_scene(name, bounds_of(&first), &labels, detect_box(&first));
     Ok(write_atomically(file, text.as_bytes())?)
 }
 
 /// `to` as seen from the folder `from`, both relative to the current directory; absolute when there is no way.
-fn relative_path(from: &Path, to: &Path) -> String {
+fn relative_path(from: &Path, to: &Path) -> PathBuf {
     let here = std::env::current_dir().unwrap_or_default();
     let from: Vec<Component> = Vec::from_iter(from.components());
     let from: PathBuf = here.join(PathBuf::from_iter(from));
@@ -163,8 +165,7 @@ fn relative_path(from: &Path, to: &Path) -> String {
     let from = normalised(&from);
     let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let up = std::iter::repeat_n(Component::ParentDir, from.components().count() - shared);
-    let relative: PathBuf = up.chain(to.components().skip(shared)).collect();
-    relative.to_string_lossy().into_owned()
+    up.chain(to.components().skip(shared)).collect()
 }
 
 /// Resolves what exists of a path; a folder that does not exist yet keeps its name.

@@ -261,6 +261,7 @@ impl<'a> Session<'a> {
         for warning in &record.warnings {
             self.observer.warning(warning);
         }
+        let labelled = assembled.labelled;
         let frame = self.previous.insert(assembled.frame);
         self.sampling.seed.frame = task.number.millionths();
         let observer = self.observer;
@@ -273,7 +274,17 @@ impl<'a> Session<'a> {
         if counters.too_many_mismatches() {
             let (mismatches, rays) = (counters.label_mismatches, counters.rays);
             let path = task.file.clone().unwrap_or_else(|| world.description.file.clone());
-            return Err(RenderError::Mismatches { path, mismatches, rays });
+            if labelled {
+                return Err(RenderError::Mismatches { path, mismatches, rays });
+            }
+            // What is inside follows from the closed surface alone; where that crosses itself there is no right answer.
+            let text = format!(
+                "{}: at {mismatches} of {rays} rays the surface, which carries no labels, overlaps itself or is open: \
+                 refraction is wrong there",
+                path.display()
+            );
+            self.observer.warning(&text);
+            record.warnings.push(text);
         }
         let output = record.output.clone();
         timed(&mut record.write_seconds, || self.write(&image, task.number, &output))

@@ -28,6 +28,8 @@ pub struct Assembled {
     pub frame: Frame,
     /// How many triangles of the frame's mesh lie between which regions, in order.
     pub interfaces: Vec<(Interface, usize)>,
+    /// True when the frame's file says itself what lies on the two sides of its triangles.
+    pub labelled: bool,
     /// True when the hierarchy of the frame before was refitted.
     pub refitted: bool,
     /// What the user should look at.
@@ -73,6 +75,7 @@ struct Assembly<'a> {
     emitters: Vec<(SurfaceId, f32)>,
     endless: Vec<bool>,
     interfaces: Vec<(Interface, usize)>,
+    labelled: bool,
     warnings: Vec<String>,
 }
 
@@ -86,6 +89,7 @@ impl<'a> Assembly<'a> {
             emitters: Vec::new(),
             endless: vec![false; world.media.len()],
             interfaces: Vec::new(),
+            labelled: false,
             warnings: Vec::new(),
         }
     }
@@ -93,6 +97,7 @@ impl<'a> Assembly<'a> {
     /// The mesh of the simulation, with its labels and the walls of its box.
     fn add_frame(&mut self, mesh: RawMesh, path: &Path) -> Result<(), FrameError> {
         let Some(frames) = self.world.frames() else { return Ok(()) };
+        self.labelled = mesh.interfaces.is_some();
         let (mut mesh, warnings) = mesh::prepare(mesh, frames.inside, path)?;
         self.warn(path, warnings);
         self.count_interfaces(&mesh);
@@ -317,6 +322,7 @@ impl<'a> Assembly<'a> {
                 needs,
             },
             interfaces: self.interfaces,
+            labelled: self.labelled,
             refitted,
             warnings: self.warnings,
         }

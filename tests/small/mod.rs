@@ -102,8 +102,12 @@ pub fn shipped_scene(samples: u32) -> String {
     let sequence = Path::new(env!("CARGO_MANIFEST_DIR")).join("sequences/iceberg");
     let text = fs::read_to_string(sequence.join("scene.toml")).unwrap();
     let text = text.replace("\"sky.exr\"", &format!("'{}'", sequence.join("sky.exr").display()));
-    let small = text.replace("resolution = [640, 360]", "resolution = [32, 18]");
-    let small = small.replace("samples = 16", &format!("samples = {samples}"));
+    let changed = |line: &str| match line.split(" = ").next() {
+        Some("resolution") => "resolution = [32, 18]".to_owned(),
+        Some("samples") => format!("samples = {samples}"),
+        _ => line.to_owned(),
+    };
+    let small: String = text.lines().map(|line| changed(line) + "\n").collect();
     assert!(small.contains("[32, 18]") && small.contains(&format!("samples = {samples}")), "{small}");
     small
 }

@@ -10,6 +10,9 @@ use std::str;
 use crate::mesh::error::{Fault, Place, excerpt};
 use crate::mesh::limits::MAX_TRIANGLES;
 
+/// Statements that say nothing about the surface.
+const PASSED_OVER: [&[u8]; 9] = [b"vt", b"vp", b"g", b"o", b"s", b"l", b"p", b"usemtl", b"mtllib"];
+
 /// A reader of the lines that matter, each ending with a line break.
 pub(super) struct Screen<'a> {
     rest: &'a [u8],
@@ -24,6 +27,10 @@ pub(super) struct Screen<'a> {
     normals: Counted,
     corners: usize,
     corner_without_normal: bool,
+    /// Some line is a statement of the format.
+    any_statement: bool,
+    /// The first line that is neither that nor a comment.
+    first_foreign: Option<(usize, String)>,
     fault: Option<Fault>,
 }
 
@@ -61,6 +68,8 @@ impl<'a> Screen<'a> {
             normals: Counted::default(),
             corners: 0,
             corner_without_normal: false,
+            any_statement: false,
+            first_foreign: None,
             fault: None,
         }
     }
@@ -81,7 +90,16 @@ impl<'a> Screen<'a> {
 
     /// The fault that was found on the way, if any.
     pub fn finish(&mut self) -> Result<(), Fault> {
-        self.fault.take().map_or(Ok(()), Err)
+        if let Some(fault) = self.fault.take() {
+            return Err(fault);
+        }
+        match self.first_foreign.take() {
+            Some((line, text)) if !self.any_statement => {
+                let problem = format!("'{text}' is no statement of OBJ, and neither is any other line");
+                Err(Fault::malformed(Place::Line(line), problem, "this is no OBJ file; rename or remove it"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Refuses an index beyond the end of its list. Only at the end of the file, since an index may be of
@@ -116,8 +134,14 @@ impl<'a> Screen<'a> {
             keyword.starts_with(name) && keyword.get(name.len()).is_none_or(u8::is_ascii_whitespace)
         };
         if !(is(b"v") || is(b"vn") || is(b"f")) {
+            if PASSED_OVER.iter().any(|name| is(name)) {
+                self.any_statement = true;
+            } else if !keyword.is_empty() && !keyword.starts_with(b"#") && self.first_foreign.is_none() {
+                self.first_foreign = Some((self.line, excerpt(line)));
+            }
             return Ok(());
         }
+        self.any_statement = true;
         let place = Place::Line(self.line);
         let text = str::from_utf8(line)
             .map_err(|_| Fault::malformed(place, "bytes that are no text", "write the file again"))?;

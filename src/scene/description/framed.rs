@@ -180,7 +180,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_frames_get_a_scene_that_parses(
-            path in "[^\\x00-\\x20]{1,12}", centre in prop::array::uniform3(-1e6f64..1e6), exponent in -4i32..7,
+            path in "[^\\s\\x00-\\x20]{1,12}", centre in prop::array::uniform3(-1e6f64..1e6), exponent in -4i32..7,
             labels in prop::collection::vec(-5i32..1000, 0..9),
         ) {
             let half = DVec3::splat(0.5 * 10f64.powi(exponent));

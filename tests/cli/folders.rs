@@ -1,0 +1,43 @@
+//! Folders of frames without a scene file.
+
+use super::*;
+
+#[test]
+fn a_scene_written_for_another_folder_of_the_same_name_is_refused() {
+    let folder = Folder::new();
+    let mesh = std::fs::read(shipped_frame(0)).unwrap();
+    folder.write("a/frames/f_0001.ply", &mesh);
+    folder.write("b/frames/f_0001.ply", &mesh);
+    floe(&folder, &["info", "a/frames"]).ended(0);
+    floe(&folder, &["info", "a/frames"]).ended(0);
+    floe(&folder, &["info", "b/frames"]).ended(78).says(&["out/frames/scene.toml", "a/frames", "b/frames"]);
+}
+
+#[test]
+fn a_folder_of_frames_gets_a_scene_once() {
+    let folder = Folder::new();
+    folder.write("drops/drop.7.ply", small::ply(&labelled(cube(), 0, 2)));
+    let quick = ["render", "drops", "--samples", "1", "--threads", "2"];
+    floe(&folder, &quick).ended(0).says(&["wrote out/drops/scene.toml"]);
+    let written = String::from_utf8(folder.read("out/drops/scene.toml")).unwrap();
+    assert!(written.contains("[camera]") && written.contains("2 = \"ice\""), "{written}");
+    assert_eq!(pictures(&folder), ["out/drops/frame_0007.exr"]);
+    let edited = written.replace("[640, 360]", "[16, 9]");
+    assert_ne!(edited, written);
+    folder.write("out/drops/scene.toml", &edited);
+    let again = floe(&folder, &quick).ended(0);
+    assert!(!again.stderr.contains("wrote"), "{again:#?}");
+    assert_eq!(folder.read("out/drops/scene.toml"), edited.as_bytes());
+    assert_eq!(folder.ledger("out/drops/ledger.jsonl")[1]["samples"], 16 * 9);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_written_scene_may_be_read_by_others_as_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.write("drops/drop.7.ply", small::ply(&labelled(cube(), 0, 1))).write("ordinary", "");
+    floe(&folder, &["info", "drops"]).ended(0);
+    let mode = |name: &str| folder.path(name).metadata().unwrap().permissions().mode();
+    assert_eq!(mode("out/drops/scene.toml"), mode("ordinary"));
+}
