@@ -177,32 +177,48 @@ impl Sample<'_> {
         }
     }
 
-    /// The nearest surface, and none that the start of the ray has jumped over.
+    /// The surface that the path meets next.
     ///
-    /// A ray starts off its triangle by a rounding error. In the wedge where two sheets meet the next one may be nearer
-    /// than that: then the surface that is found belongs to another medium than the one the path is in. The ray is
-    /// started again a little way back, and the first boundary of the path's medium close by is taken.
+    /// At the edges of sharp wedges rounding decides which sheet seems nearest, and a ray that starts off its triangle
+    /// by a rounding error may have jumped over the next sheet. Then the surface that is found belongs to another medium
+    /// than the one the path is in, and the labels tell which sheet within a rounding error is meant.
     fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
         let frame = self.frame;
         let found = frame.accel.closest(ray, Ignored::one(branch.leaves));
         let ends_before = found.is_none() && ray.t_max.is_finite();
-        if branch.leaves == u32::MAX || ends_before || frame.could_be_next(branch.medium, found.as_ref()) {
+        if ends_before || frame.could_be_next(branch.medium, found.as_ref()) {
             return found;
         }
+        let beside = found.and_then(|hit| self.beside(branch, ray, &hit));
+        beside.or_else(|| self.jumped_over(branch, ray, found)).or(found)
+    }
 
+    /// A boundary of the path's medium as far away as `found`, or, where that is at the very start, beyond it.
+    fn beside(&mut self, branch: &Branch, ray: &Ray, found: &Hit) -> Option<Hit> {
+        let slack = 4.0 * rounding(ray.origin, found.t);
+        let t_max = if found.t <= slack { ray.t_max } else { found.t + slack };
+        self.scratch.counters.rays += 1;
+        let other =
+            self.frame.accel.closest(&Ray { t_max, ..*ray }, Ignored([branch.leaves, found.triangle]))?;
+        self.frame.could_be_next(branch.medium, Some(&other)).then_some(other)
+    }
+
+    /// The first boundary of the path's medium along the ray, started again a little way back.
+    fn jumped_over(&mut self, branch: &Branch, ray: &Ray, found: Option<Hit>) -> Option<Hit> {
+        let frame = self.frame;
         let step = 8.0 * rounding(ray.origin, 0.0);
         let mut back = Ray { origin: ray.at(-step), t_max: found.map_or(ray.t_max, |hit| hit.t), ..*ray };
         let mut ignored = Ignored::one(branch.leaves);
         for _ in 0..MOST_SHEETS {
             self.scratch.counters.rays += 1;
-            let Some(sheet) = frame.accel.closest(&back, ignored) else { break };
+            let sheet = frame.accel.closest(&back, ignored)?;
             if frame.could_be_next(branch.medium, Some(&sheet)) {
                 return Some(sheet);
             }
             back.origin = back.at(sheet.t);
             ignored = Ignored([branch.leaves, sheet.triangle]);
         }
-        found
+        None
     }
 
     /// The path turns at a particle of the medium.
