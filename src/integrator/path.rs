@@ -179,46 +179,39 @@ impl Sample<'_> {
 
     /// The surface that the path meets next.
     ///
-    /// At the edges of sharp wedges rounding decides which sheet seems nearest, and a ray that starts off its triangle
-    /// by a rounding error may have jumped over the next sheet. Then the surface that is found belongs to another medium
-    /// than the one the path is in, and the labels tell which sheet within a rounding error is meant.
+    /// A ray that leaves an interface starts at the very point, so that it cannot jump over a sheet in the wedge where
+    /// several meet. Rounding may put the point on the wrong side of a neighbour, and at the edges of wedges it decides
+    /// which sheet seems nearest; the labels tell which is meant. One that does not belong to the path's medium is looked
+    /// through at the very start, and gives way elsewhere to one that does and is as far away.
     fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
-        let frame = self.frame;
-        let found = frame.accel.closest(ray, Ignored::one(branch.leaves));
-        let ends_before = found.is_none() && ray.t_max.is_finite();
-        if ends_before || frame.could_be_next(branch.medium, found.as_ref()) {
-            return found;
+        let slack = 4.0 * rounding(ray.origin, 0.0);
+        let (mut from, mut passed) = (*ray, 0.0);
+        let mut ignored = Ignored::one(branch.leaves);
+        let mut found = self.frame.accel.closest(&from, ignored);
+        for _ in 0..MOST_SHEETS {
+            let Some(hit) = found.filter(|hit| !self.frame.is_boundary_of(branch.medium, hit)) else { break };
+            self.scratch.counters.rays += 1;
+            if let Some(other) = self.beside(branch, &from, &hit) {
+                found = Some(other);
+                break;
+            }
+            if passed + hit.t > slack {
+                break;
+            }
+            passed += hit.t;
+            from = Ray { origin: from.at(hit.t), t_max: from.t_max - hit.t, ..from };
+            ignored = Ignored([branch.leaves, hit.triangle]);
+            found = self.frame.accel.closest(&from, ignored);
         }
-        let beside = found.and_then(|hit| self.beside(branch, ray, &hit));
-        beside.or_else(|| self.jumped_over(branch, ray, found)).or(found)
+        found.map(|hit| Hit { t: passed + hit.t, ..hit })
     }
 
-    /// A boundary of the path's medium as far away as `found`, or, where that is at the very start, beyond it.
+    /// A boundary of the path's medium that is as far away as `found`, which is none.
     fn beside(&mut self, branch: &Branch, ray: &Ray, found: &Hit) -> Option<Hit> {
-        let slack = 4.0 * rounding(ray.origin, found.t);
-        let t_max = if found.t <= slack { ray.t_max } else { found.t + slack };
-        self.scratch.counters.rays += 1;
+        let t_max = found.t + rounding(ray.origin, found.t);
         let other =
             self.frame.accel.closest(&Ray { t_max, ..*ray }, Ignored([branch.leaves, found.triangle]))?;
-        self.frame.could_be_next(branch.medium, Some(&other)).then_some(other)
-    }
-
-    /// The first boundary of the path's medium along the ray, started again a little way back.
-    fn jumped_over(&mut self, branch: &Branch, ray: &Ray, found: Option<Hit>) -> Option<Hit> {
-        let frame = self.frame;
-        let step = 8.0 * rounding(ray.origin, 0.0);
-        let mut back = Ray { origin: ray.at(-step), t_max: found.map_or(ray.t_max, |hit| hit.t), ..*ray };
-        let mut ignored = Ignored::one(branch.leaves);
-        for _ in 0..MOST_SHEETS {
-            self.scratch.counters.rays += 1;
-            let sheet = frame.accel.closest(&back, ignored)?;
-            if frame.could_be_next(branch.medium, Some(&sheet)) {
-                return Some(sheet);
-            }
-            back.origin = back.at(sheet.t);
-            ignored = Ignored([branch.leaves, sheet.triangle]);
-        }
-        None
+        self.frame.is_boundary_of(branch.medium, &other).then_some(other)
     }
 
     /// The path turns at a particle of the medium.

@@ -48,7 +48,7 @@ impl Sample<'_> {
         let (incident, beyond) = pair.crossed(hit.from_front);
         self.check_label(branch, pair, hit);
         branch.enter(beyond, self.index_factor(incident, beyond));
-        branch.leave(hit, branch.direction);
+        branch.go_on(hit, branch.direction);
         Fate::GoesOn
     }
 
@@ -63,13 +63,13 @@ impl Sample<'_> {
         branch.arrival.lit = None;
         let factor = self.index_factor(incident, beyond);
         let mut reflected = *branch;
-        reflected.leave(hit, ways.reflected);
+        reflected.go_on(hit, ways.reflected);
         let Some(direction) = ways.refracted else {
             *branch = reflected;
             return branch.interacted(u[3]);
         };
         let mut refracted = *branch;
-        refracted.leave(hit, direction);
+        refracted.go_on(hit, direction);
         refracted.enter(beyond, factor);
         if branch.splits_left > 0 {
             reflected.split_off(ways.reflectance, 0);
@@ -179,7 +179,15 @@ impl Sample<'_> {
 }
 
 impl Branch {
-    /// Starts again from a surface along `direction`.
+    /// Starts again from an interface along `direction`, at the very point: [`Sample::nearest`] tells by the labels which
+    /// sheets rounding has put on the wrong side of it.
+    fn go_on(&mut self, hit: &SurfaceHit, direction: Vec3) {
+        self.origin = hit.point.position;
+        self.direction = direction;
+        self.leaves = hit.triangle;
+    }
+
+    /// Starts again from an opaque surface along `direction`.
     fn leave(&mut self, hit: &SurfaceHit, direction: Vec3) {
         self.origin = hit.point.spawn(hit.ng, direction);
         self.direction = direction;

@@ -60,11 +60,9 @@ impl Frame {
         self.lit[id.0 as usize]
     }
 
-    /// True when a ray in `medium` can come upon `found`: an opaque surface, an interface of that medium, or, where the
-    /// medium has no end, nothing.
+    /// True when a ray in `medium` can meet what it has hit: an opaque surface, or an interface of that medium.
     #[inline]
-    pub fn could_be_next(&self, medium: MediumId, found: Option<&Hit>) -> bool {
-        let Some(hit) = found else { return medium == MediumId(0) || self.endless[medium.0 as usize] };
+    pub fn is_boundary_of(&self, medium: MediumId, hit: &Hit) -> bool {
         match self.surface(hit.triangle) {
             Surface::Interface(pair) => pair.crossed(hit.from_front).0 == medium,
             _ => true,
