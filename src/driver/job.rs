@@ -11,9 +11,7 @@ use crate::scene::FrameError;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
 use crate::scene::world::World;
-use crate::sequence::{
-    FrameFile, FrameNumber, FrameSelection, SequenceError, discover, frame_path, output_path,
-};
+use crate::sequence::{FrameFile, FrameNumber, FrameSelection, SequenceError, discover, frame_path};
 
 /// Name of the scene file in a folder.
 const SCENE_FILE: &str = "scene.toml";
@@ -90,11 +88,6 @@ impl Job {
             .path
             .clone()
             .unwrap_or_else(|| format!("out/{}/frame_####.exr", self.name))
-    }
-
-    /// Where a frame's picture goes.
-    pub fn output(&self, pattern: &str, number: FrameNumber) -> PathBuf {
-        PathBuf::from(output_path(pattern, number))
     }
 }
 

@@ -102,8 +102,7 @@ impl Sample<'_> {
                 return Lanes::ZERO;
             }
             let (a, b) = pair.crossed(hit.from_front);
-            let ratio = self.frame.medium(a).n / self.frame.medium(b).n;
-            visible *= coefficients.transmittance(hit.t) * (ratio * ratio);
+            visible *= coefficients.transmittance(hit.t) * self.index_factor(a, b);
             medium = b;
             let surface = self.frame.geometry.surface_hit(&hit, light.wi);
             ray.origin = surface.point.spawn(surface.ng, light.wi);

@@ -172,7 +172,7 @@ impl Sample<'_> {
     }
 
     /// (n_a / n_b)^2 on the way from a into b.
-    fn index_factor(&self, a: MediumId, b: MediumId) -> f32 {
+    pub(super) fn index_factor(&self, a: MediumId, b: MediumId) -> f32 {
         let ratio = self.frame.medium(a).n / self.frame.medium(b).n;
         ratio * ratio
     }

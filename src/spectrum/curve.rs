@@ -10,7 +10,7 @@
 //! So a grey light on grey things makes the same picture in RGB and over wavelength, and white stays white. Spectral
 //! quantities are sampled at whole nanometres and linear in between: features narrower than that are not seen.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::cie::{self, NANOMETRES};
 use super::rgb::RgbCurve;
@@ -116,11 +116,6 @@ impl Spectrum {
         }
     }
 
-    /// X, Y, Z: of the light itself, or of what is not light under D65 of luminance 1.
-    pub fn to_xyz(&self, role: Role) -> DVec3 {
-        cie::rgb_to_xyz(self.to_rgb(role).as_dvec3())
-    }
-
     /// Values at whole nanometres.
     fn tabulate(&self, role: Role) -> [f64; NANOMETRES] {
         match self {
@@ -182,6 +177,7 @@ mod tests {
     use super::super::lab::delta_e;
     use super::super::wavelength::film_rgb;
     use super::*;
+    use glam::DVec3;
 
     /// The film's colour of the product of two quantities, with the mean over u taken by the midpoint rule.
     fn film(mode: LaneMode, light: &LaneCurve, surface: &LaneCurve, bounces: i32) -> DVec3 {

@@ -34,11 +34,6 @@ impl Side {
     pub fn axis(self) -> usize {
         usize::from(self.0 / 2)
     }
-
-    /// True for the plane at the greater coordinate.
-    pub fn is_upper(self) -> bool {
-        self.0 % 2 == 1
-    }
 }
 
 /// What a triangle is to the domain.
