@@ -6,6 +6,10 @@
 //! refitted, or built another way, it is the same to the last bit.
 
 mod build;
+mod collapse;
+mod leaf;
+mod machine;
+mod node;
 mod refit;
 mod traverse;
 mod validate;
@@ -15,7 +19,8 @@ pub use traverse::Ignored;
 use glam::Vec3;
 
 use crate::geometry::Bounds;
-use crate::geometry::triangle::{BoundsPack, TrianglePack};
+use leaf::{Leaf, LeafIds};
+use node::{Child, Node};
 
 /// Index of a triangle in the order it was given in.
 pub type TriangleId = u32;
@@ -33,70 +38,20 @@ pub struct Hit {
     pub from_front: bool,
 }
 
-/// A bounding volume hierarchy of four children a node and four triangles a leaf.
+/// A bounding volume hierarchy of eight children a node and up to eight triangles a leaf.
 #[derive(Clone, Debug, Default)]
 pub struct Accel {
     /// Children stand after their parents; the root is the first.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
+    /// Which triangles each leaf holds.
+    ids: Vec<LeafIds>,
     bounds: Bounds,
     triangles: usize,
 }
 
-/// The boxes of four children and where they are: two cache lines.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct Node {
-    boxes: BoundsPack,
-    children: [Child; 4],
-}
-
-/// A node, a leaf, or nothing, in one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Child(u32);
-
-/// Four triangles and their indices; unused lanes have [`Leaf::NO_TRIANGLE`].
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-struct Leaf {
-    pack: TrianglePack,
-    ids: [TriangleId; 4],
-}
-
-impl Leaf {
-    const NO_TRIANGLE: TriangleId = TriangleId::MAX;
-}
-
-impl Node {
-    const EMPTY: Self = Self { boxes: BoundsPack::EMPTY, children: [Child::NOTHING; 4] };
-}
-
-impl Child {
-    const LEAF: u32 = 1 << 31;
-    /// The box of nothing is empty, so that no ray ever gets there.
-    const NOTHING: Self = Self(u32::MAX);
-
-    fn node(index: usize) -> Self {
-        Self(index as u32)
-    }
-
-    fn leaf(index: usize) -> Self {
-        Self(index as u32 | Self::LEAF)
-    }
-
-    /// The index of a leaf.
-    fn as_leaf(self) -> Option<usize> {
-        (self != Self::NOTHING && self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
-    }
-
-    /// The index of a node.
-    fn as_node(self) -> Option<usize> {
-        (self.0 & Self::LEAF == 0).then_some(self.0 as usize)
-    }
-}
-
 /// Deepest tree that is ever traversed; the builder falls back to a balanced tree beyond it.
-const MAX_DEPTH: usize = 42;
+const MAX_DEPTH: usize = 24;
 
 impl Accel {
     /// Number of triangles.
@@ -116,6 +71,6 @@ impl Accel {
 
     /// Bytes that the hierarchy occupies.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.leaves)
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + size_of_val(&*self.ids)
     }
 }

@@ -1,8 +1,9 @@
 //! Walks the tree: nearer children first, popped children culled again against the best hit so far.
 
-use glam::Vec4;
-
-use super::{Accel, Child, Hit, Leaf, MAX_DEPTH, TriangleId};
+use super::leaf::{Leaf, LeafRay};
+use super::machine::{Eight, Lanes, Stack, WithLanes, with_best};
+use super::node::{Child, Node, NodeRay};
+use super::{Accel, Hit, MAX_DEPTH, TriangleId};
 use crate::geometry::Ray;
 use crate::geometry::triangle::RayCast;
 
@@ -25,59 +26,144 @@ impl Ignored {
     }
 }
 
-/// A node leaves at most three children behind while the fourth is visited.
-const STACK_SIZE: usize = 3 * MAX_DEPTH + 1;
+/// A node leaves at most seven children behind while the eighth is visited.
+const STACK_SIZE: usize = (Node::WIDTH - 1) * MAX_DEPTH + 1;
 
-/// Children that still have to be visited, with the distances at which they are entered.
-struct Stack {
-    entries: [(f32, Child); STACK_SIZE],
-    len: usize,
+/// A child that still has to be visited: the bits of the distance at which it is entered, which order like the
+/// distances since none is negative, above those of the child.
+type Entry = u64;
+
+fn entry(near: f32, child: Child) -> Entry {
+    u64::from(near.to_bits()) << 32 | u64::from(child.0)
 }
 
-impl Stack {
-    /// The last pushed child that is entered before or at `t_max`.
-    #[inline(always)]
-    fn pop(&mut self, t_max: f32) -> Option<Child> {
-        while self.len > 0 {
-            self.len -= 1;
-            let (near, child) = self.entries[self.len];
-            if near <= t_max {
-                return Some(child);
-            }
+/// The last pushed child that is entered before or at `t_max`.
+#[inline(always)]
+fn pop(stack: &mut Stack<STACK_SIZE>, t_max: f32) -> Option<Child> {
+    while let Some(entry) = stack.pop() {
+        if f32::from_bits((entry >> 32) as u32) <= t_max {
+            return Some(Child(entry as u32));
         }
-        None
     }
+    None
+}
+
+/// Returns the nearest of the entered children and leaves the others on the stack, the farthest lowest.
+#[inline(always)]
+fn nearest_first<L: Lanes>(
+    stack: &mut Stack<STACK_SIZE>,
+    near: L,
+    mut entered: u32,
+    children: &[Child; 8],
+) -> Child {
+    let first = entered.trailing_zeros() as usize & 7;
+    entered &= entered - 1;
+    if entered == 0 {
+        return children[first];
+    }
+    let mut distances = Eight([0.0; 8]);
+    near.store(&mut distances);
+    let at = |lane: usize| entry(distances.0[lane], children[lane]);
+    let second = entered.trailing_zeros() as usize & 7;
+    entered &= entered - 1;
+    let (a, b) = (at(first), at(second));
+    let mut nearest = a.min(b);
+    let base = stack.len();
+    stack.push(a.max(b));
+    while entered != 0 {
+        let lane = entered.trailing_zeros() as usize & 7;
+        entered &= entered - 1;
+        let new = at(lane);
+        stack.push(new.max(nearest));
+        nearest = nearest.min(new);
+        stack.sink(base);
+    }
+    Child(nearest as u32)
 }
 
 impl Accel {
     /// The nearest triangle at or before `ray.t_max`; the lower index among those at the same distance.
     pub fn closest(&self, ray: &Ray, ignored: Ignored) -> Option<Hit> {
-        let cast = RayCast::new(ray);
-        match cast.axis {
-            0 => self.closest_along::<0>(&cast, ray.t_max, ignored),
-            1 => self.closest_along::<1>(&cast, ray.t_max, ignored),
-            _ => self.closest_along::<2>(&cast, ray.t_max, ignored),
-        }
+        with_best(Closest { accel: self, ray, ignored })
     }
 
     /// True when anything but the ignored triangles lies at or before `ray.t_max`.
     pub fn occluded(&self, ray: &Ray, ignored: Ignored) -> bool {
-        let cast = RayCast::new(ray);
-        match cast.axis {
-            0 => self.occluded_along::<0>(&cast, ray.t_max, ignored),
-            1 => self.occluded_along::<1>(&cast, ray.t_max, ignored),
-            _ => self.occluded_along::<2>(&cast, ray.t_max, ignored),
-        }
+        with_best(Occluded { accel: self, ray, ignored })
     }
 
-    fn closest_along<const K: usize>(&self, cast: &RayCast, t_max: f32, ignored: Ignored) -> Option<Hit> {
+    /// Shows every leaf that the ray may enter before `t_max`, and which of its triangles it may meet, to `visit`,
+    /// until that returns true.
+    #[inline(always)]
+    fn walk<L: Lanes>(
+        &self,
+        ray: &Ray,
+        cast: &RayCast,
+        t_max: &mut f32,
+        mut visit: impl FnMut(&Leaf, usize, u32, &mut f32) -> bool,
+    ) -> bool {
+        if self.nodes.is_empty() {
+            return false;
+        }
+        let (node_ray, leaf_ray) = (NodeRay::<L>::new(ray), LeafRay::<L>::new(cast));
+        let mut stack = Stack::new();
+        let mut next = Some(Child::node(0));
+        while let Some(child) = next {
+            if let Some(index) = child.as_node() {
+                let node = &self.nodes[index];
+                let (near, entered) = node.enter(&node_ray, *t_max);
+                if entered != 0 {
+                    next = Some(nearest_first(&mut stack, near, entered, &node.children));
+                    continue;
+                }
+            } else if let Some(index) = child.as_leaf() {
+                let leaf = &self.leaves[index];
+                let candidates = leaf.candidates(&leaf_ray);
+                if candidates != 0 && visit(leaf, index, candidates, t_max) {
+                    return true;
+                }
+            }
+            next = pop(&mut stack, *t_max);
+        }
+        false
+    }
+}
+
+/// The lanes of a mask, lowest first.
+#[inline(always)]
+fn lanes_of(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < 8).then_some(lane)
+    })
+}
+
+struct Closest<'a> {
+    accel: &'a Accel,
+    ray: &'a Ray,
+    ignored: Ignored,
+}
+
+impl WithLanes for Closest<'_> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Option<Hit> {
+        let Self { accel, ray, ignored } = self;
+        let cast = RayCast::new(ray);
         let mut best: Option<Hit> = None;
-        let mut t_max = t_max;
-        self.walk(cast, &mut t_max, |leaf, t_max| {
-            let Some(hits) = cast.pack::<K>(&leaf.pack, *t_max) else { return false };
-            for lane in hits.lanes() {
-                let Some(found) = cast.settle(&hits, &leaf.pack, lane, *t_max) else { continue };
-                let triangle = leaf.ids[lane];
+        let mut t_max = ray.t_max;
+        accel.walk::<L>(ray, &cast, &mut t_max, |leaf, index, candidates, t_max| {
+            let mut rest = candidates;
+            while rest != 0 {
+                let lane = rest.trailing_zeros() as usize & 7;
+                rest &= rest - 1;
+                let Some(found) = cast.triangle_in_order(leaf.triangle_in_order(lane, cast.axes), *t_max)
+                else {
+                    continue;
+                };
+                let triangle = accel.ids[index][lane];
                 let tied = best.is_some_and(|b| found.t == b.t && triangle > b.triangle);
                 if !tied && !ignored.contains(triangle) {
                     *t_max = found.t;
@@ -89,68 +175,27 @@ impl Accel {
         });
         best
     }
+}
 
-    fn occluded_along<const K: usize>(&self, cast: &RayCast, t_max: f32, ignored: Ignored) -> bool {
-        let mut t_max = t_max;
-        self.walk(cast, &mut t_max, |leaf, t_max| {
-            cast.pack::<K>(&leaf.pack, *t_max).is_some_and(|hits| {
-                hits.lanes().any(|lane| {
-                    !ignored.contains(leaf.ids[lane])
-                        && cast.settle(&hits, &leaf.pack, lane, *t_max).is_some()
-                })
+struct Occluded<'a> {
+    accel: &'a Accel,
+    ray: &'a Ray,
+    ignored: Ignored,
+}
+
+impl WithLanes for Occluded<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { accel, ray, ignored } = self;
+        let cast = RayCast::new(ray);
+        let mut t_max = ray.t_max;
+        accel.walk::<L>(ray, &cast, &mut t_max, |leaf, index, candidates, t_max| {
+            lanes_of(candidates).any(|lane| {
+                !ignored.contains(accel.ids[index][lane])
+                    && cast.triangle_in_order(leaf.triangle_in_order(lane, cast.axes), *t_max).is_some()
             })
         })
     }
-
-    /// Shows every leaf that the ray may enter before `t_max` to `visit`, until that returns true.
-    #[inline(always)]
-    fn walk(&self, cast: &RayCast, t_max: &mut f32, mut visit: impl FnMut(&Leaf, &mut f32) -> bool) -> bool {
-        if self.nodes.is_empty() {
-            return false;
-        }
-        let mut stack = Stack { entries: [(0.0, Child::NOTHING); STACK_SIZE], len: 0 };
-        let mut next = Some(Child::node(0));
-        while let Some(child) = next {
-            let Some(index) = child.as_node() else {
-                if let Some(leaf) = child.as_leaf()
-                    && visit(&self.leaves[leaf], t_max)
-                {
-                    return true;
-                }
-                next = stack.pop(*t_max);
-                continue;
-            };
-            let node = &self.nodes[index];
-            let (near, far) = cast.slabs(&node.boxes);
-            let entered = near.cmple(far) & near.cmple(Vec4::splat(*t_max));
-            next = nearest_first(&mut stack, near, entered.bitmask(), &node.children)
-                .or_else(|| stack.pop(*t_max));
-        }
-        false
-    }
-}
-
-/// Returns the nearest of the entered children and leaves the others on the stack, the farthest lowest.
-#[inline(always)]
-fn nearest_first(stack: &mut Stack, near: Vec4, entered: u32, children: &[Child; 4]) -> Option<Child> {
-    if entered == 0 {
-        return None;
-    }
-    let base = stack.len;
-    let mut rest = entered;
-    while rest != 0 {
-        let lane = rest.trailing_zeros() as usize & 3;
-        rest &= rest - 1;
-        let entry = (near[lane], children[lane]);
-        // Insertion into at most three entries, nearest on top.
-        let mut place = stack.len;
-        while place > base && stack.entries[place - 1].0 < entry.0 {
-            stack.entries[place] = stack.entries[place - 1];
-            place -= 1;
-        }
-        stack.entries[place] = entry;
-        stack.len += 1;
-    }
-    stack.len -= 1;
-    Some(stack.entries[stack.len].1)
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Accel, Leaf, MAX_DEPTH, Node};
+use super::{Accel, MAX_DEPTH, Node};
 use crate::geometry::Bounds;
 
 impl Accel {
@@ -16,12 +16,12 @@ impl Accel {
             return Err(format!("{} triangles in the tree, {} given", self.triangles, triangles.len()));
         }
         let mut seen = vec![false; triangles.len()];
-        for leaf in &self.leaves {
-            for (lane, &id) in leaf.ids.iter().enumerate().filter(|(_, id)| **id != Leaf::NO_TRIANGLE) {
+        for (leaf, ids) in self.leaves.iter().zip(&self.ids) {
+            for (lane, &id) in ids.iter().enumerate().take(leaf.len()) {
                 if std::mem::replace(&mut seen[id as usize], true) {
                     return Err(format!("triangle {id} is in two leaves"));
                 }
-                if leaf.pack.get(lane) != triangles[id as usize].map(|i| positions[i as usize]) {
+                if leaf.triangle(lane) != triangles[id as usize].map(|i| positions[i as usize]) {
                     return Err(format!("triangle {id} has other vertices in its leaf"));
                 }
             }
@@ -40,10 +40,10 @@ impl Accel {
             if child.as_node().is_some_and(|c| c <= index) {
                 return Err(format!("child {lane} of node {index} does not follow it"));
             }
-            let stated = node.boxes.get(lane);
+            let stated = node.bounds(lane);
             let inside = |bounds: Bounds| stated.union(bounds) == stated;
             let sound = match child.as_node() {
-                Some(c) => (0..4).all(|l| inside(self.nodes[c].boxes.get(l))),
+                Some(c) => (0..Node::WIDTH).all(|l| inside(self.nodes[c].bounds(l))),
                 None => inside(self.leaf_bounds(child)),
             };
             if !sound {

@@ -1,0 +1,165 @@
+//! Neighbouring triangles with the vertices that they share.
+//!
+//! Triangles of a surface share most of their vertices: four neighbours have six, not twelve. A leaf holds up to
+//! eight vertices once and says for each corner which it is. Vertices are sheared into the space of the ray before
+//! they are handed to the triangles, so that both memory and arithmetic are spent once a vertex.
+
+use glam::{Vec3, Vec3A};
+
+use super::TriangleId;
+use super::machine::{Eight, Lanes};
+use crate::geometry::triangle::RayCast;
+
+/// Up to eight triangles over up to eight vertices: two cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Leaf {
+    /// By axis.
+    vertices: [Eight; 3],
+    /// Which vertex the first, second and third corners of the triangles are.
+    corners: [[u8; 8]; 3],
+    /// Number of triangles; the lanes behind them repeat the last one.
+    count: u8,
+}
+
+/// Which triangles a leaf holds; apart from the vertices, since only hits ask for it.
+pub(super) type LeafIds = [TriangleId; Leaf::MOST];
+
+/// A ray as leaves see it.
+#[derive(Clone, Copy)]
+pub(super) struct LeafRay<L> {
+    origin: [L; 3],
+    shear: [L; 3],
+    axes: [usize; 3],
+}
+
+impl Leaf {
+    /// Triangles, and vertices, at most.
+    pub const MOST: usize = 8;
+    /// In lanes without a triangle.
+    pub const NO_TRIANGLE: TriangleId = TriangleId::MAX;
+
+    /// A leaf over `ids`, or nothing when they have too many vertices or are too many.
+    pub fn over(ids: &[TriangleId], positions: &[Vec3], triangles: &[[u32; 3]]) -> Option<Self> {
+        let mut shared = SharedVertices::default();
+        for &id in ids {
+            shared.add(triangles[id as usize])?;
+        }
+        let mut leaf = Self { vertices: [Eight([0.0; 8]); 3], corners: shared.corners, count: shared.count };
+        for (i, &index) in shared.vertices.iter().enumerate() {
+            leaf.set_vertex(i, positions[index as usize]);
+        }
+        Some(leaf)
+    }
+
+    /// Moves the vertices; `triangles` has the corners in the order in which the leaf was made.
+    pub fn refit(&mut self, ids: &LeafIds, positions: &[Vec3], triangles: &[[u32; 3]]) {
+        for lane in 0..self.len() {
+            let corners = triangles[ids[lane] as usize];
+            for (corner, vertex) in corners.into_iter().enumerate() {
+                self.set_vertex(usize::from(self.corners[corner][lane]), positions[vertex as usize]);
+            }
+        }
+    }
+
+    fn set_vertex(&mut self, index: usize, p: Vec3) {
+        for axis in 0..3 {
+            self.vertices[axis].0[index] = p[axis];
+        }
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        usize::from(self.count)
+    }
+
+    /// The vertices of the triangle in a lane.
+    pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
+        self.triangle_in_order(lane, [0, 1, 2]).map(Vec3::from)
+    }
+
+    /// The vertices of the triangle in a lane, their coordinates in the order of `axes`.
+    #[inline(always)]
+    pub fn triangle_in_order(&self, lane: usize, axes: [usize; 3]) -> [Vec3A; 3] {
+        let [x, y, z] = axes.map(|axis| &self.vertices[axis].0);
+        let vertex = |corner: usize| {
+            let vertex = usize::from(self.corners[corner][lane] & 7);
+            Vec3A::new(x[vertex], y[vertex], z[vertex])
+        };
+        [vertex(0), vertex(1), vertex(2)]
+    }
+
+    /// A bit for each triangle that the ray may meet; none that it does meet is left out.
+    #[inline(always)]
+    pub fn candidates<L: Lanes>(&self, ray: &LeafRay<L>) -> u32 {
+        let [kx, ky, kz] = ray.axes;
+        let z = L::load(&self.vertices[kz]).sub(ray.origin[2]);
+        let x = L::load(&self.vertices[kx]).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
+        let y = L::load(&self.vertices[ky]).sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
+        let [a, b, c] = &self.corners;
+        let (ax, bx, cx) = (x.pick(a), x.pick(b), x.pick(c));
+        let (ay, by, cy) = (y.pick(a), y.pick(b), y.pick(c));
+        let u = cx.mul(by).sub(cy.mul(bx));
+        let v = ax.mul(cy).sub(ay.mul(cx));
+        let w = bx.mul(ay).sub(by.mul(ax));
+        let zero = L::splat(0.0);
+        let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
+        let negative = greatest.at_most(zero) & self.used();
+        let positive = zero.at_most(least) & self.used();
+        if negative | positive == 0 {
+            return 0;
+        }
+        // Behind the origin is what has a numerator of t with another sign than the denominator; where an edge
+        // function is zero, the exact one will tell.
+        let t = u.mul(z.pick(a)).add(v.mul(z.pick(b))).add(w.mul(z.pick(c))).mul(ray.shear[2]);
+        negative & (t.at_most(zero) | zero.at_most(greatest))
+            | positive & (zero.at_most(t) | least.at_most(zero))
+    }
+
+    /// A bit for each triangle.
+    #[inline(always)]
+    fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+}
+
+impl<L: Lanes> LeafRay<L> {
+    #[inline(always)]
+    pub fn new(cast: &RayCast) -> Self {
+        let (origin, shear) = (cast.origin, cast.shear);
+        Self {
+            origin: [L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)],
+            shear: [L::splat(shear.x), L::splat(shear.y), L::splat(shear.z)],
+            axes: cast.axes,
+        }
+    }
+}
+
+/// The vertices of some triangles, each once.
+#[derive(Default)]
+struct SharedVertices {
+    vertices: Vec<u32>,
+    corners: [[u8; 8]; 3],
+    count: u8,
+}
+
+impl SharedVertices {
+    fn add(&mut self, triangle: [u32; 3]) -> Option<()> {
+        let lane = usize::from(self.count);
+        if lane >= Leaf::MOST {
+            return None;
+        }
+        for (corner, index) in triangle.into_iter().enumerate() {
+            let place = self.vertices.iter().position(|&v| v == index).unwrap_or_else(|| {
+                self.vertices.push(index);
+                self.vertices.len() - 1
+            });
+            if place >= Leaf::MOST {
+                return None;
+            }
+            self.corners[corner][lane..].fill(place as u8);
+        }
+        self.count += 1;
+        Some(())
+    }
+}
