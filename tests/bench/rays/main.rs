@@ -1,6 +1,6 @@
 //! Rays a second, builds and refits of the hierarchy on one thread: `cargo bench --bench rays -- --help`.
 
-#![allow(clippy::print_stdout)] // the table is what it is for
+#![allow(clippy::print_stdout, clippy::print_stderr)] // the table is what it is for
 
 mod meshes;
 mod options;
@@ -9,19 +9,30 @@ mod rays;
 mod timing;
 mod tracing;
 
+use std::process::ExitCode;
+
 use floe::accel::Accel;
 
 use meshes::Mesh;
 use options::Options;
 use timing::{in_turns, median, time};
 
-fn main() -> Result<(), String> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
     let options = Options::read()?;
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().map_err(|e| e.to_string())?;
     println!("| mesh | row | Mray/s | ns/ray | hits |\n|---|---|---|---|---|");
     let mut builds = Vec::new();
     for mesh in options.meshes() {
-        let mesh = mesh?;
         let (build, mut accel) = time(|| Accel::build(&mesh.positions, &mesh.triangles));
         print_rays(&options, &mesh, &accel);
         let moved = mesh.moved();

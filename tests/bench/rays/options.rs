@@ -42,18 +42,20 @@ impl Options {
                 "--repeat" => options.repeat = value()?.parse().map_err(|e| format!("--repeat: {e}"))?,
                 // Cargo adds it.
                 "--bench" => {}
+                "--help" => return Err(USAGE.to_owned()),
                 other => return Err(format!("unknown argument {other}\n{USAGE}")),
             }
         }
         options.repeat = options.repeat.max(1);
+        if let Some(name) = options.meshes.iter().find(|name| !meshes::NAMES.contains(&name.as_str())) {
+            return Err(format!("no mesh {name}; there are {}", meshes::NAMES.join(", ")));
+        }
         Ok(options)
     }
 
     /// The meshes, made one after the other.
-    pub fn meshes(&self) -> impl Iterator<Item = Result<meshes::Mesh, String>> {
-        self.meshes.iter().map(|name| {
-            meshes::by_name(name).ok_or_else(|| format!("no mesh {name}; there are {:?}", meshes::NAMES))
-        })
+    pub fn meshes(&self) -> impl Iterator<Item = meshes::Mesh> {
+        self.meshes.iter().filter_map(|name| meshes::by_name(name))
     }
 
     /// True for rows that are wanted.

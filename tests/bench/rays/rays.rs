@@ -95,12 +95,12 @@ fn scattered(mesh: &Mesh, landings: &[Landing]) -> Vec<Ray> {
     landings.iter().map(scatter).collect()
 }
 
-/// One ray from each landing to a point on a square above and to the side, as of a sun half way down.
+/// One ray from each landing to a point on a square above and to the side.
 fn to_light(mesh: &Mesh, landings: &[Landing]) -> Vec<Ray> {
     let mut random = Random(5);
     let aim = |landing: &Landing| {
         let origin = landing.point + landing.normal * (OFFSET * mesh.extent);
-        let light = Vec3::new(3.0, 0.3 * random.signed(), 1.5 + 0.3 * random.signed()) * mesh.extent;
+        let light = Vec3::new(2.2, -2.0 + 0.3 * random.signed(), 1.5 + 0.3 * random.signed()) * mesh.extent;
         let way = light - origin;
         Ray { origin, direction: way.normalize(), t_max: way.length() }
     };

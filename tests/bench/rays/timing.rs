@@ -19,8 +19,9 @@ pub fn in_turns(
     passes: usize,
     contenders: &mut [&mut dyn FnMut(Range<usize>) -> usize],
 ) -> Vec<Vec<f64>> {
-    let mut seconds = vec![vec![0.0; passes]; contenders.len()];
+    let mut seconds = vec![Vec::new(); contenders.len()];
     for pass in 0..passes {
+        seconds.iter_mut().for_each(|passes| passes.push(0.0));
         for (turn, start) in (0..count).step_by(TURN).enumerate() {
             let range = start..(start + TURN).min(count);
             for i in 0..contenders.len() {

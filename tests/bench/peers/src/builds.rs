@@ -2,9 +2,10 @@
 
 use std::rc::Rc;
 
-use floe::accel::Accel;
+use floe::accel::{Accel, Ignored};
+use floe::geometry::Ray;
 
-use crate::embree::{Device, Kind, Scene, padded};
+use crate::embree::{Device, Kind, RayHit, Scene, padded};
 use crate::meshes::Mesh;
 use crate::ratio;
 use crate::timing::{median, time};
@@ -21,7 +22,6 @@ pub fn rows(device: Option<&Rc<Device>>, mesh: &Mesh, passes: usize) -> Result<[
         let (build, mut accel) = time(|| Accel::build(&mesh.positions, &mesh.triangles));
         ours[0].push(build);
         ours[1].push(time(|| accel.refit(&moved, &mesh.triangles)).0);
-        drop(accel);
         let Some(device) = device else { continue };
         let (positions, triangles) = (padded(&mesh.positions), mesh.triangles.clone());
         let (build, scene) = time(|| Scene::build(device, Kind::Robust, positions, triangles));
@@ -33,6 +33,7 @@ pub fn rows(device: Option<&Rc<Device>>, mesh: &Mesh, passes: usize) -> Result<[
         let (refit, done) = time(|| scene.update());
         done?;
         theirs[1].push(refit);
+        check_same(mesh, &accel, &scene)?;
     }
     Ok([0, 1].map(|row| {
         let mine = 1e3 * median(&ours[row]);
@@ -41,4 +42,15 @@ pub fn rows(device: Option<&Rc<Device>>, mesh: &Mesh, passes: usize) -> Result<[
         }
         format!("| {:.1} | {mine:.1} | {} |", 1e3 * median(&theirs[row]), ratio(&theirs[row], &ours[row]))
     }))
+}
+
+/// Whether both refits moved the surface to the same place, as the ray in the middle of the image sees it.
+fn check_same(mesh: &Mesh, accel: &Accel, scene: &Scene) -> Result<(), String> {
+    let ray = Ray::new(mesh.eye, -mesh.eye.normalize());
+    let ours = accel.closest(&ray, Ignored::NOTHING).map(|hit| hit.t);
+    let theirs = scene.closest(&RayHit::new(&ray));
+    match (ours, theirs) {
+        (Some(a), Some(b)) if (a - b).abs() < 1e-4 * a => Ok(()),
+        _ => Err(format!("after refits a ray meets the mesh {} at {ours:?} and at {theirs:?}", mesh.name)),
+    }
 }

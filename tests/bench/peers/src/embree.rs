@@ -6,7 +6,7 @@
 
 #![allow(unsafe_code)]
 
-use std::ffi::{c_char, c_int, c_uint, c_void};
+use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 use std::ptr;
 use std::rc::Rc;
 
@@ -113,11 +113,13 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens the library at `path`; others that it needs lie beside it.
+    /// Opens the library at `path`; others that it needs lie beside it. `config` is added to the device's.
     ///
     /// # Errors
     /// What cannot be opened, found, or started.
-    pub fn open(path: &str) -> Result<Rc<Self>, String> {
+    pub fn open(path: &str, config: &str) -> Result<Rc<Self>, String> {
+        let config = CString::new(format!("threads=1,set_affinity=0,{config}"))
+            .map_err(|e| format!("EMBREE_CONFIG: {e}"))?;
         // SAFETY: the caller names a build of Embree 4, whose functions have these signatures; the library stays
         // open as long as they can be called.
         unsafe {
@@ -148,7 +150,7 @@ impl Device {
             };
             // Only version 4 takes the arguments of a query last and optional.
             let _: unsafe extern "C" fn() = function!(b"rtcGetGeometryUserDataFromScene\0");
-            let handle = new_device(c"threads=1,set_affinity=0".as_ptr());
+            let handle = new_device(config.as_ptr());
             if handle.is_null() {
                 return Err(format!("{path}: no device"));
             }

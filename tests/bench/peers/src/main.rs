@@ -18,6 +18,7 @@ mod timing;
 #[path = "../../rays/tracing.rs"]
 mod tracing;
 
+use std::process::ExitCode;
 use std::rc::Rc;
 
 use floe::accel::Accel;
@@ -27,11 +28,21 @@ use embree::{Device, Kind, Scene, padded};
 use meshes::Mesh;
 use options::Options;
 
-fn main() -> Result<(), String> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
     let options = Options::read()?;
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().map_err(|e| e.to_string())?;
     let device = match std::env::var("EMBREE_LIBRARY") {
-        Ok(path) => Some(Device::open(&path)?),
+        Ok(path) => Some(Device::open(&path, &std::env::var("EMBREE_CONFIG").unwrap_or_default())?),
         Err(_) => {
             println!("EMBREE_LIBRARY is not set: floe alone.\n");
             None
@@ -42,12 +53,12 @@ fn main() -> Result<(), String> {
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     for mesh in options.meshes() {
-        print_rays(&options, device.as_ref(), &mesh?)?;
+        print_rays(&options, device.as_ref(), &mesh)?;
     }
     if options.build {
         println!("\n| mesh | tree | Embree robust, ms | floe, ms | floe / robust |\n|---|---|---|---|---|");
         for mesh in options.meshes() {
-            print_builds(&options, device.as_ref(), &mesh?)?;
+            print_builds(&options, device.as_ref(), &mesh)?;
         }
     }
     Ok(())
