@@ -1,20 +1,26 @@
 //! The hierarchy that finds what a ray meets first.
 //!
-//! [`Accel::build`] takes positions and index triples; [`Accel::refit`] takes new positions for the same triples.
+//! [`Accel::build`] takes positions and index triples; [`Accel::refit`] takes new positions for the same triples, and
+//! [`Accel::update`] decides between the two.
 //! [`Accel::closest`] and [`Accel::occluded`] answer rays. Hits are decided by the triangle alone
 //! ([`crate::geometry::triangle`]) and ties by the lower index, so the answer does not depend on the tree: built,
 //! refitted, or built another way, it is the same to the last bit.
 
 mod build;
 mod collapse;
+mod connectivity;
+mod cost;
 mod leaf;
 mod machine;
 mod node;
 mod refit;
 mod traverse;
+mod update;
 mod validate;
 
+pub use connectivity::Connectivity;
 pub use traverse::Ignored;
+pub use update::{Hierarchy, REBUILD_ABOVE, Update};
 
 use glam::Vec3;
 
@@ -48,6 +54,8 @@ pub struct Accel {
     ids: Vec<LeafIds>,
     bounds: Bounds,
     triangles: usize,
+    /// The cost of the tree as it was built, once it is known.
+    built_cost: Option<f32>,
 }
 
 /// Deepest tree that is ever traversed; the builder falls back to a balanced tree beyond it.

@@ -53,7 +53,7 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
             }
             None => None,
         };
-        let assembled = job.world.assemble(task.number, mesh, previous.take())?;
+        let assembled = job.world.assemble(task.number, mesh, previous.as_ref())?;
         *text += &describe_frame(&task.number.to_string(), &assembled);
         previous = Some(assembled.frame);
     }
@@ -122,7 +122,7 @@ fn describe_frame(number: &str, assembled: &Assembled) -> String {
         let _ = writeln!(text, "    between {} and {}: {count}", interface.front.0, interface.back.0);
     }
     let _ = writeln!(text, "  camera in {}", frame.medium(frame.camera_medium).name);
-    let hierarchy = if assembled.refitted { "refitted" } else { "built" };
+    let hierarchy = assembled.update.hierarchy.name();
     let _ = writeln!(text, "  hierarchy {hierarchy}, {} bytes", frame.accel.bytes());
     for line in frame.needs.lines() {
         let _ = writeln!(text, "  {line}");

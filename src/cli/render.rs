@@ -28,7 +28,7 @@ pub struct RenderArguments {
     /// Seed of every random number [default: render.seed of the scene]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
-    /// Threads [default: all cores]
+    /// Threads that render; one more makes the next frame ready [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Go on with the other frames when one fails; the exit code still tells

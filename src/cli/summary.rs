@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::accel::Hierarchy;
 use crate::driver::{FrameRecord, RenderReport, Status};
 use crate::integrator::Counters;
 use crate::sequence::{FrameNumber, format_numbers};
@@ -13,6 +14,7 @@ pub fn summary(report: &RenderReport) -> String {
         Some(frames_line(report, &done)),
         failures_line(report),
         error_line(&done),
+        hierarchy_line(report),
         events_line(&done),
         left_out_line(report),
         places_line(report, &done),
@@ -73,6 +75,18 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
             percent(mean)
         )
     })
+}
+
+/// How often the hierarchy was refitted; nothing for a single frame.
+fn hierarchy_line(report: &RenderReport) -> Option<String> {
+    let made = |hierarchy| report.frames.iter().filter(|r| r.hierarchy == Some(hierarchy)).count();
+    let counts: Vec<String> = [Hierarchy::Built, Hierarchy::Refitted, Hierarchy::Rebuilt]
+        .into_iter()
+        .map(|hierarchy| (made(hierarchy), hierarchy.name()))
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, name)| format!("{count} {name}"))
+        .collect();
+    (report.frames.len() > 1 && !counts.is_empty()).then(|| format!("hierarchy: {}", counts.join(", ")))
 }
 
 fn events_line(done: &[&FrameRecord]) -> Option<String> {

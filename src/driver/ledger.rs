@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::error::RenderError;
+use crate::accel::Hierarchy;
 use crate::film::ErrorEstimate;
 use crate::integrator::Counters;
 
@@ -43,12 +44,20 @@ pub struct FrameRecord {
     pub interfaces: BTreeMap<String, usize>,
     /// Bytes of the hierarchy.
     pub accel_bytes: usize,
-    /// True when the hierarchy of the frame before was refitted.
+    /// The same for one triangle.
+    pub accel_bytes_per_triangle: f64,
+    /// What became of the hierarchy of the frame before; `None` when the frame could not be assembled.
+    pub hierarchy: Option<Hierarchy>,
+    /// True when it was refitted.
     pub refitted: bool,
-    /// Reading the mesh.
+    /// Cost of the refitted hierarchy relative to that when it was built: the reason when it was rebuilt after all.
+    pub cost_ratio: Option<f32>,
+    /// Reading the mesh, mostly while the frame before was rendered.
     pub read_seconds: f64,
-    /// Checking it, stitching, normals, hierarchy.
+    /// Checking it, stitching, normals, hierarchy; likewise.
     pub build_seconds: f64,
+    /// How long nothing was rendered because the frame was not ready.
+    pub wait_seconds: f64,
     /// Light transport.
     pub render_seconds: f64,
     /// Encoding and writing.
@@ -97,9 +106,13 @@ impl FrameRecord {
             triangles: 0,
             interfaces: BTreeMap::new(),
             accel_bytes: 0,
+            accel_bytes_per_triangle: 0.0,
+            hierarchy: None,
             refitted: false,
+            cost_ratio: None,
             read_seconds: 0.0,
             build_seconds: 0.0,
+            wait_seconds: 0.0,
             render_seconds: 0.0,
             write_seconds: 0.0,
             samples: 0,
@@ -110,9 +123,9 @@ impl FrameRecord {
         }
     }
 
-    /// Reading, building, rendering and writing.
+    /// What the frame adds to the run: waiting for it, rendering and writing.
     pub fn seconds(&self) -> f64 {
-        self.read_seconds + self.build_seconds + self.render_seconds + self.write_seconds
+        self.wait_seconds + self.render_seconds + self.write_seconds
     }
 }
 

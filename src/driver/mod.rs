@@ -1,13 +1,15 @@
 //! Owns the loop: which frames, in which order, on how many threads, and what is told about them.
 //!
 //! [`job::Job`] opens a scene file or a folder. [`render()`] goes through its frames, one at a time, all threads on the
-//! tiles of one frame, and writes a line into the ledger for each. A bad frame never takes the others with it when
-//! [`RenderOptions::keep_going`] is set.
+//! tiles of one frame while one more makes the next frame ready, and writes a line into the ledger for each. A bad frame
+//! never takes the others with it when [`RenderOptions::keep_going`] is set.
 
+mod ahead;
 pub mod error;
 pub mod job;
 pub mod ledger;
 pub mod render;
+mod session;
 pub mod tiles;
 
 pub use error::RenderError;

@@ -35,31 +35,8 @@ pub fn canonical(mesh: &RawMesh) -> RawMesh {
     }
 }
 
-/// The triangles, each begun at its least vertex with its winding kept, in rising order.
-pub fn canonical_triangles(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let mut canonical: Vec<_> = triangles.iter().copied().map(least_first).collect();
-    canonical.sort_unstable();
-    canonical
-}
-
-/// Whether two meshes connect the same vertex numbers by the same triangles in the same order.
-///
-/// This is what lets a structure over the triangles be refitted as it is. For the same set of triangles in
-/// another order compare [`canonical_triangles`] or [`connectivity_hash`].
-pub fn same_connectivity(a: &[[u32; 3]], b: &[[u32; 3]]) -> bool {
-    a == b
-}
-
-/// A number for the set of oriented triangles, whatever their order: FNV-1a over [`canonical_triangles`].
-pub fn connectivity_hash(triangles: &[[u32; 3]]) -> u64 {
-    const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
-    const PRIME: u64 = 0x0100_0000_01b3;
-    let canonical = canonical_triangles(triangles);
-    let bytes = canonical.iter().flatten().flat_map(|index| index.to_le_bytes());
-    bytes.fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME))
-}
-
-fn least_first([a, b, c]: [u32; 3]) -> [u32; 3] {
+/// The same oriented triangle, begun at its least vertex.
+pub(crate) fn least_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a <= b && a <= c {
         [a, b, c]
     } else if b <= c {
@@ -120,23 +97,11 @@ mod tests {
         let mut turned = mesh.clone();
         turned.triangles[2].swap(1, 2);
         assert_ne!(canonical(&turned), canonical(&mesh));
-        assert_ne!(connectivity_hash(&turned.triangles), connectivity_hash(&mesh.triangles));
         let mut relabelled = mesh.clone();
         relabelled.interfaces.as_mut().unwrap()[2].front = Region(9);
         assert_ne!(canonical(&relabelled), canonical(&mesh));
         let mut moved = mesh.clone();
         moved.positions[3].z += 1e-12;
         assert_ne!(canonical(&moved), canonical(&mesh));
-    }
-
-    #[test]
-    fn connectivity_is_exact_and_its_hash_is_not_about_order() {
-        let mut triangles = fan(5).triangles;
-        let before = triangles.clone();
-        assert!(same_connectivity(&triangles, &before));
-        triangles.swap(0, 3);
-        triangles[1].rotate_left(1);
-        assert!(!same_connectivity(&triangles, &before));
-        assert_eq!(connectivity_hash(&triangles), connectivity_hash(&before));
     }
 }

@@ -43,6 +43,16 @@ impl Geometry {
     /// Marks a triangle without shading normals.
     pub const FLAT: [u32; 3] = [u32::MAX; 3];
 
+    /// Becomes a copy of another geometry in the memory that this one has.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { positions, triangles, surfaces, normals, corners } = other;
+        self.positions.clone_from(positions);
+        self.triangles.clone_from(triangles);
+        self.surfaces.clone_from(surfaces);
+        self.normals.clone_from(normals);
+        self.corners.clone_from(corners);
+    }
+
     /// The three vertices of a triangle.
     #[inline]
     pub fn vertices(&self, triangle: u32) -> [Vec3; 3] {

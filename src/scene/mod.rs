@@ -11,6 +11,7 @@ pub mod error;
 pub mod frame;
 pub mod geometry;
 pub mod needs;
+mod parts;
 pub mod surface;
 pub mod world;
 

@@ -11,14 +11,15 @@ use super::description::{
     Placement, SceneDescription, SkyDescription,
 };
 use super::error::FrameError;
+use super::parts::Parts;
 use crate::light::{Environment, Picture, Sun};
-use crate::mesh::{self, RawMesh, Region};
+use crate::mesh::{self, Region};
 use crate::optics::RefractiveIndex;
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::has_place;
 use crate::spectrum::{LaneMode, Role, Spectrum};
 
-/// A scene without its meshes.
+/// A scene without the meshes that change.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The scene file.
@@ -35,16 +36,16 @@ pub struct World {
     pub environment: Environment,
     /// The sun.
     pub sun: Option<Sun>,
-    /// Meshes of `[[surfaces]]` that are the same in every frame; `None` for those with a pattern.
-    pub(super) still_meshes: Vec<Option<RawMesh>>,
+    /// The `[[surfaces]]` that are the same in every frame, those without a pattern, ready for rays.
+    pub(super) still: Parts,
     names: BTreeMap<String, MediumId>,
 }
 
 impl World {
-    /// Prepares everything but the meshes. `placement` is where the camera goes when the scene does not say.
+    /// Prepares everything but the meshes that change. `placement` is where the camera goes when the scene does not say.
     ///
     /// # Errors
-    /// When a picture of the sky or a mesh that is the same in every frame cannot be read.
+    /// When a picture of the sky or a mesh that is the same in every frame cannot be read, or has no place here.
     pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
         let Placement { eye, target } = description.camera.placement.unwrap_or(placement);
@@ -57,12 +58,19 @@ impl World {
             let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
             Sun::new(sun.direction, sun.angular_diameter, irradiance)
         });
-        let still_meshes = description
-            .surfaces
-            .iter()
-            .map(|s| still_mesh(&description.directory, &s.mesh))
-            .collect::<Result<_, _>>()?;
-        Ok(Self { still_meshes, description, mode, origin, camera, media, environment, sun, names })
+        let still = Parts::default();
+        let mut world = Self { description, mode, origin, camera, media, environment, sun, still, names };
+        world.still = world.still_parts()?;
+        Ok(world)
+    }
+
+    fn still_parts(&self) -> Result<Parts, FrameError> {
+        let mut parts = Parts::default();
+        for surface in self.description.surfaces.iter().filter(|s| !has_place(&s.mesh)) {
+            let path = self.description.directory.join(&surface.mesh);
+            parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
+        }
+        Ok(parts)
     }
 
     /// The medium that fills a region.
@@ -81,10 +89,6 @@ impl World {
     pub fn frames(&self) -> Option<&FramesDescription> {
         self.description.frames.as_ref()
     }
-}
-
-fn still_mesh(directory: &Path, name: &str) -> Result<Option<RawMesh>, FrameError> {
-    if has_place(name) { Ok(None) } else { Ok(Some(mesh::read(&directory.join(name))?)) }
 }
 
 /// Metres. Far from zero a grid that went on growing would leave the eye kilometres from the origin, and with it all

@@ -99,6 +99,7 @@ fn render_writes_pictures_a_ledger_and_a_summary() {
         summary[1].starts_with("estimated relative error ") && summary[1].contains("worst"),
         "{summary:?}"
     );
+    assert!(summary.contains(&"hierarchy: 3 built"), "{summary:?}");
     assert_eq!(*summary.last().unwrap(), "pictures out/melt/frame_####.exr; ledger out/melt/ledger.jsonl");
     // No terminal: one plain line a frame.
     assert_eq!(outcome.stderr.lines().count(), 3, "{outcome:#?}");
@@ -115,12 +116,15 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
     keys.sort();
     let documented = [
         "accel_bytes",
+        "accel_bytes_per_triangle",
         "build_seconds",
+        "cost_ratio",
         "cut",
         "depth_limited",
         "escaped_inside",
         "file",
         "frame",
+        "hierarchy",
         "interfaces",
         "label_mismatches",
         "left_out",
@@ -136,6 +140,7 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "status",
         "trapped",
         "triangles",
+        "wait_seconds",
         "warnings",
         "write_seconds",
     ];

@@ -1,0 +1,221 @@
+//! From the hierarchy of one frame to that of the next: refitted where the triangles are the same, else built.
+//!
+//! Refitting keeps the tree and moves its boxes, which overlap more and more as the surface moves on. How much slower
+//! rays become is told by the cost ([`Accel::cost`]) relative to that of the tree as it was built; above
+//! [`REBUILD_ABOVE`] it is built anew. Hits depend on neither.
+
+use glam::Vec3;
+use serde::Serialize;
+
+use super::leaf::Leaf;
+use super::{Accel, Connectivity, TriangleId};
+
+/// A tree that costs this many times what it did when it was built is built again.
+pub const REBUILD_ABOVE: f32 = 1.2;
+
+/// What became of the hierarchy of the frame before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hierarchy {
+    /// There was none, or its triangles were others.
+    Built,
+    /// Its triangles were the same and it still fits.
+    Refitted,
+    /// Its triangles were the same but it had become too costly.
+    Rebuilt,
+}
+
+impl Hierarchy {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Built => "built",
+            Self::Refitted => "refitted",
+            Self::Rebuilt => "rebuilt",
+        }
+    }
+}
+
+/// What [`Accel::update`] did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Update {
+    /// What became of the hierarchy.
+    pub hierarchy: Hierarchy,
+    /// Its cost after refitting, relative to that when it was built; `None` when nothing was refitted.
+    pub cost_ratio: Option<f32>,
+}
+
+impl Accel {
+    /// Makes the hierarchy that of other positions and, unless the connectivity is the same, other triangles.
+    ///
+    /// The first `still` triangles never change, neither their indices nor their positions.
+    pub fn update(
+        &mut self,
+        positions: &[Vec3],
+        triangles: &[[u32; 3]],
+        still: usize,
+        connectivity: &Connectivity,
+    ) -> Update {
+        match connectivity {
+            Connectivity::New => {
+                self.renew(positions, triangles, still);
+                return Update { hierarchy: Hierarchy::Built, cost_ratio: None };
+            }
+            Connectivity::Same => {}
+            Connectivity::Reordered(new_ids) => self.renumber(new_ids, positions, triangles),
+        }
+        let built = self.built_cost.unwrap_or_else(|| self.cost());
+        self.built_cost = Some(built);
+        self.refit(positions, triangles);
+        let cost_ratio = if built > 0.0 { self.cost() / built } else { 1.0 };
+        let hierarchy = if cost_ratio > REBUILD_ABOVE {
+            self.renew(positions, triangles, still);
+            Hierarchy::Rebuilt
+        } else {
+            Hierarchy::Refitted
+        };
+        Update { hierarchy, cost_ratio: Some(cost_ratio) }
+    }
+
+    fn renew(&mut self, positions: &[Vec3], triangles: &[[u32; 3]], still: usize) {
+        self.rebuild(positions, triangles, still);
+        self.built_cost = None;
+    }
+
+    /// Builds the hierarchy over triangles of which the first `still` are the same in every frame.
+    pub fn build_over(positions: &[Vec3], triangles: &[[u32; 3]], still: usize) -> Self {
+        debug_assert!(still <= triangles.len());
+        Self::build(positions, triangles)
+    }
+
+    /// Builds the hierarchy over other triangles, the first `still` of which are those that it had.
+    pub fn rebuild(&mut self, positions: &[Vec3], triangles: &[[u32; 3]], still: usize) {
+        *self = Self::build_over(positions, triangles, still);
+    }
+
+    /// Becomes a copy of another hierarchy in the memory that this one has.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { nodes, leaves, ids, bounds, triangles, built_cost } = other;
+        self.nodes.clone_from(nodes);
+        self.leaves.clone_from(leaves);
+        self.ids.clone_from(ids);
+        (self.bounds, self.triangles, self.built_cost) = (*bounds, *triangles, *built_cost);
+    }
+
+    /// Gives the triangles other indices: `new_ids` has the new one of each old one. `triangles` are the new ones,
+    /// which may begin at other corners.
+    fn renumber(&mut self, new_ids: &[TriangleId], positions: &[Vec3], triangles: &[[u32; 3]]) {
+        for (leaf, ids) in self.leaves.iter_mut().zip(&mut self.ids) {
+            let ids = &mut ids[..leaf.len()];
+            ids.iter_mut().for_each(|id| *id = new_ids[*id as usize]);
+            // The same triangles have the same vertices, as many as before.
+            if let Some(renewed) = Leaf::over(ids, positions, triangles) {
+                *leaf = renewed;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::Ignored;
+    use crate::geometry::Ray;
+
+    /// A sheet of n x n squares in the plane z = 0, lifted by a function of its points.
+    fn sheet(n: u32, z: impl Fn(f32, f32) -> f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let row = n + 1;
+        let at = |i: u32| Vec3::new((i % row) as f32, (i / row) as f32, 0.0);
+        let positions = (0..row * row).map(at).map(|p| p.with_z(z(p.x, p.y))).collect();
+        let corners = (0..n * n).map(|i| i / n * row + i % n);
+        let triangles = corners.flat_map(|i| [[i, i + 1, i + row + 1], [i, i + row + 1, i + row]]).collect();
+        (positions, triangles)
+    }
+
+    fn assert_alike(a: &Accel, b: &Accel) {
+        for i in 0..400_u32 {
+            let origin = Vec3::new((i % 20) as f32 + 0.37, (i / 20) as f32 + 0.21, 30.0);
+            let ray = Ray::new(origin, Vec3::new(0.01, 0.02, -1.0).normalize());
+            assert_eq!(a.closest(&ray, Ignored::NOTHING), b.closest(&ray, Ignored::NOTHING));
+        }
+    }
+
+    #[test]
+    fn a_wave_is_refitted_and_a_shuffle_rebuilt() {
+        let (flat, triangles) = sheet(20, |_, _| 0.0);
+        let mut accel = Accel::build_over(&flat, &triangles, 0);
+        let (wave, _) = sheet(20, |x, y| 0.2 * (x + 0.5 * y).sin());
+        let update = accel.update(&wave, &triangles, 0, &Connectivity::Same);
+        assert_eq!(update.hierarchy, Hierarchy::Refitted);
+        assert!((0.9..REBUILD_ABOVE).contains(&update.cost_ratio.unwrap()), "{update:?}");
+        accel.validate(&wave, &triangles).unwrap();
+        assert_alike(&accel, &Accel::build(&wave, &triangles));
+        // Every vertex goes where another was: neighbours in the tree are none any more.
+        let shuffled: Vec<Vec3> = (0..wave.len()).map(|i| wave[i * 200 % wave.len()]).collect();
+        let update = accel.update(&shuffled, &triangles, 0, &Connectivity::Same);
+        assert_eq!(update.hierarchy, Hierarchy::Rebuilt);
+        assert!(update.cost_ratio.unwrap() > 2.0, "{update:?}");
+        accel.validate(&shuffled, &triangles).unwrap();
+        // From here the cost is relative to the new tree.
+        let update = accel.update(&shuffled, &triangles, 0, &Connectivity::Same);
+        assert_eq!((update.hierarchy, update.cost_ratio), (Hierarchy::Refitted, Some(1.0)));
+    }
+
+    #[test]
+    fn a_sea_to_the_horizon_hides_no_decay() {
+        let (mut positions, mut triangles) = sheet(20, |_, _| 0.0);
+        let count = positions.len();
+        let corner = |i: u32| count as u32 + i;
+        positions
+            .extend([(-1e5, -1e5), (1e5, -1e5), (1e5, 1e5), (-1e5, 1e5)].map(|(x, y)| Vec3::new(x, y, -1.0)));
+        triangles.extend([[corner(0), corner(1), corner(2)], [corner(0), corner(2), corner(3)]]);
+        let mut accel = Accel::build_over(&positions, &triangles, 0);
+        let mut shuffled = positions.clone();
+        (0..count).for_each(|i| shuffled[i] = positions[i * 200 % count]);
+        let update = accel.update(&shuffled, &triangles, 0, &Connectivity::Same);
+        assert_eq!(update.hierarchy, Hierarchy::Rebuilt, "{update:?}");
+    }
+
+    #[test]
+    fn slow_decay_adds_up_over_frames() {
+        let (flat, triangles) = sheet(20, |_, _| 0.0);
+        let mut accel = Accel::build_over(&flat, &triangles, 0);
+        let sheared = |k: f32| flat.iter().map(|p| *p + Vec3::Z * k * ((p.x * 37.0).sin() + p.y)).collect();
+        let decisions: Vec<Hierarchy> = (1..40)
+            .map(|k| {
+                let positions: Vec<Vec3> = sheared(0.1 * k as f32);
+                accel.update(&positions, &triangles, 0, &Connectivity::Same).hierarchy
+            })
+            .collect();
+        assert_eq!(decisions[0], Hierarchy::Refitted, "a step costs little");
+        assert!(decisions.contains(&Hierarchy::Rebuilt), "many do not: {decisions:?}");
+    }
+
+    #[test]
+    fn another_order_has_its_own_indices() {
+        let (positions, triangles) = sheet(20, |x, y| 0.3 * (x * y).cos());
+        let mut turned: Vec<[u32; 3]> = triangles.iter().rev().map(|&[a, b, c]| [b, c, a]).collect();
+        turned.swap(3, 700);
+        let mut accel = Accel::build_over(&positions, &triangles, 0);
+        let connectivity = Connectivity::between(&triangles, &turned);
+        let update = accel.update(&positions, &turned, 0, &connectivity);
+        assert_eq!((update.hierarchy, update.cost_ratio), (Hierarchy::Refitted, Some(1.0)));
+        accel.validate(&positions, &turned).unwrap();
+        assert_alike(&accel, &Accel::build(&positions, &turned));
+    }
+
+    #[test]
+    fn a_copy_is_the_same_tree_and_nothing_at_all_is_no_matter() {
+        let (positions, triangles) = sheet(8, |_, _| 0.0);
+        let source = Accel::build_over(&positions, &triangles, 0);
+        let mut copy = Accel::build_over(&positions[..4], &[[0, 1, 2]], 0);
+        copy.copy_from(&source);
+        copy.validate(&positions, &triangles).unwrap();
+        assert_eq!(copy.cost(), source.cost());
+        let mut empty = Accel::default();
+        let update = empty.update(&[], &[], 0, &Connectivity::Same);
+        assert_eq!((update.hierarchy, update.cost_ratio), (Hierarchy::Refitted, Some(1.0)));
+        assert_eq!(empty.update(&positions, &triangles, 0, &Connectivity::New).hierarchy, Hierarchy::Built);
+        empty.validate(&positions, &triangles).unwrap();
+    }
+}

@@ -1,0 +1,163 @@
+//! Meshes put together in one list, with what their triangles are.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::description::{MaterialDescription, NormalsDescription, SurfaceDescription};
+use super::error::FrameError;
+use super::geometry::Geometry;
+use super::surface::{MediumPair, Surface, SurfaceId};
+use super::world::World;
+use crate::mesh::{self, RawMesh, Region, normals};
+use crate::optics::medium::MediumId;
+use crate::spectrum::Role;
+
+/// Triangles and the surfaces that they belong to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Parts {
+    pub geometry: Geometry,
+    pub surfaces: Vec<Surface>,
+    /// The boundaries among the surfaces.
+    pub pairs: BTreeMap<MediumPair, SurfaceId>,
+    /// The lights among the surfaces, and how bright each counts.
+    pub emitters: Vec<(SurfaceId, f32)>,
+    pub warnings: Vec<String>,
+}
+
+/// A mesh that is fit for rays, and how it enters a scene.
+pub(super) struct Placed<'a> {
+    pub mesh: &'a RawMesh,
+    /// Where it came from; messages name it.
+    pub path: &'a Path,
+    pub normals: NormalsDescription,
+    /// Equal for triangles that may share normals, as in [`normals::group_keys`].
+    pub group: &'a [u32],
+    /// What each triangle is; `None` for nothing.
+    pub ids: &'a [Option<SurfaceId>],
+}
+
+impl Parts {
+    /// A mesh that the simulator did not write.
+    pub fn add_surface(
+        &mut self,
+        world: &World,
+        surface: &SurfaceDescription,
+        raw: RawMesh,
+        path: &Path,
+    ) -> Result<(), FrameError> {
+        // What a surface is follows from the scene file; labels that its file may carry mean nothing here.
+        let unlabelled = RawMesh { interfaces: None, ..raw };
+        let (mut mesh, warnings) = mesh::prepare(unlabelled, Region(1), path)?;
+        if let MaterialDescription::Dielectric { .. } | MaterialDescription::Null { .. } = surface.material {
+            self.warn(path, warnings);
+        }
+        // Front is the side of the normal as the file has it, whatever was made of an inside-out mesh.
+        mesh.interfaces = None;
+        let id = self.add_material(world, &surface.material);
+        let ids = vec![id; mesh.triangles.len()];
+        let group = vec![0; mesh.triangles.len()];
+        let (scale, translate) = (surface.scale, surface.translate);
+        let placed = Placed { mesh: &mesh, path, normals: surface.normals, group: &group, ids: &ids };
+        self.append(&placed, |p| p * scale + translate - world.origin)
+    }
+
+    fn add_material(&mut self, world: &World, material: &MaterialDescription) -> Option<SurfaceId> {
+        let mode = world.mode;
+        let medium = |name: &str| world.medium_of_name(name).unwrap_or(MediumId(0));
+        let surface = match material {
+            MaterialDescription::Dielectric { front, back } => {
+                return self.pair(world, medium(front), medium(back), false);
+            }
+            MaterialDescription::Null { front, back } => {
+                return self.pair(world, medium(front), medium(back), true);
+            }
+            MaterialDescription::Diffuse { reflectance } => {
+                Surface::Diffuse { reflectance: reflectance.prepare(Role::Reflectance, mode) }
+            }
+            MaterialDescription::Conductor { eta, k } => Surface::Conductor {
+                eta: eta.prepare(Role::Coefficient, mode),
+                k: k.prepare(Role::Coefficient, mode),
+            },
+            MaterialDescription::Emitter { radiance } => {
+                let importance = radiance.to_rgb(Role::Illuminant).element_sum().max(0.0);
+                self.emitters.push((SurfaceId(self.surfaces.len() as u16), importance));
+                Surface::Emitter { radiance: radiance.prepare(Role::Illuminant, mode) }
+            }
+        };
+        Some(self.push_surface(surface))
+    }
+
+    /// The boundary between two media; `None` between a medium and itself, which is nothing.
+    pub fn pair(&mut self, world: &World, front: MediumId, back: MediumId, open: bool) -> Option<SurfaceId> {
+        if front == back {
+            return None;
+        }
+        let index = |id: MediumId| world.media[id.0 as usize].n;
+        let pair = MediumPair { front, back, matched: open || index(front) == index(back) };
+        if let Some(id) = self.pairs.get(&pair) {
+            return Some(*id);
+        }
+        let id = self.push_surface(Surface::Interface(pair));
+        self.pairs.insert(pair, id);
+        Some(id)
+    }
+
+    /// A surface of its own.
+    pub fn push_surface(&mut self, surface: Surface) -> SurfaceId {
+        self.surfaces.push(surface);
+        SurfaceId((self.surfaces.len() - 1) as u16)
+    }
+
+    /// Appends the triangles that are something; `placed` gives metres from the scene's origin.
+    pub fn append(&mut self, part: &Placed, placed: impl Fn(DVec3) -> DVec3) -> Result<(), FrameError> {
+        let Placed { mesh, path, group, ids, .. } = *part;
+        let first_vertex = self.geometry.positions.len() as u32;
+        let first_normal = self.geometry.normals.len() as u32;
+        for (vertex, &p) in mesh.positions.iter().enumerate() {
+            let relative = placed(p);
+            // Squares of distances must stay finite.
+            if relative.abs().max_element() > 1e18 {
+                let distance = relative.abs().max_element();
+                return Err(FrameError::TooFar { path: path.into(), vertex, distance });
+            }
+            self.geometry.positions.push(relative.as_vec3());
+        }
+        let shading = match part.normals {
+            NormalsDescription::Flat => None,
+            NormalsDescription::Smooth => Some(normals::smooth(mesh, group)),
+            NormalsDescription::File => Some(normals::checked_file_normals(mesh, group).0),
+        };
+        if let Some(shading) = &shading {
+            self.geometry.normals.extend_from_slice(&shading.values);
+        }
+        let corners = shading.and_then(|s| s.corners);
+        for (i, id) in ids.iter().enumerate() {
+            let Some(id) = id else { continue };
+            self.geometry.triangles.push(mesh.triangles[i].map(|v| v + first_vertex));
+            self.geometry.surfaces.push(*id);
+            let flat = Geometry::FLAT;
+            self.geometry.corners.push(corners.as_ref().map_or(flat, |c| c[i].map(|n| n + first_normal)));
+        }
+        Ok(())
+    }
+
+    /// Warnings about a file.
+    pub fn warn(&mut self, path: &Path, warnings: impl IntoIterator<Item = impl Display>) {
+        self.warnings.extend(warnings.into_iter().map(|w| format!("{}: {w}", path.display())));
+    }
+
+    /// Becomes a copy of other parts in the memory of a geometry that nothing needs any more.
+    pub fn copy_in(mut geometry: Geometry, other: &Self) -> Self {
+        geometry.copy_from(&other.geometry);
+        Self {
+            geometry,
+            surfaces: other.surfaces.clone(),
+            pairs: other.pairs.clone(),
+            emitters: other.emitters.clone(),
+            warnings: other.warnings.clone(),
+        }
+    }
+}
