@@ -8,7 +8,7 @@ use glam::{Vec3, Vec3A};
 
 use super::TriangleId;
 use super::machine::{Eight, Lanes};
-use crate::geometry::triangle::RayCast;
+use crate::geometry::triangle::{EdgeHit, RayCast};
 
 /// Up to eight triangles over up to eight vertices: two cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,13 @@ pub(super) struct Leaf {
     corners: [[u8; 8]; 3],
     /// Number of triangles; the lanes behind them repeat the last one.
     count: u8,
+}
+
+/// Triangles of a leaf that a ray may meet.
+pub(super) struct Candidates {
+    mask: u32,
+    edges: [Eight; 3],
+    t_numerators: Eight,
 }
 
 /// Which triangles a leaf holds; apart from the vertices, since only hits ask for it.
@@ -75,12 +82,12 @@ impl Leaf {
 
     /// The vertices of the triangle in a lane.
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.triangle_in_order(lane, [0, 1, 2]).map(Vec3::from)
+        self.turned_triangle(lane, [0, 1, 2]).map(Vec3::from)
     }
 
     /// The vertices of the triangle in a lane, their coordinates in the order of `axes`.
     #[inline(always)]
-    pub fn triangle_in_order(&self, lane: usize, axes: [usize; 3]) -> [Vec3A; 3] {
+    pub fn turned_triangle(&self, lane: usize, axes: [usize; 3]) -> [Vec3A; 3] {
         let [x, y, z] = axes.map(|axis| &self.vertices[axis].0);
         let vertex = |corner: usize| {
             let vertex = usize::from(self.corners[corner][lane] & 7);
@@ -89,9 +96,9 @@ impl Leaf {
         [vertex(0), vertex(1), vertex(2)]
     }
 
-    /// A bit for each triangle that the ray may meet; none that it does meet is left out.
+    /// The triangles that the ray may meet; none that it does meet is left out.
     #[inline(always)]
-    pub fn candidates<L: Lanes>(&self, ray: &LeafRay<L>) -> u32 {
+    pub fn candidates<L: Lanes>(&self, ray: &LeafRay<L>) -> Option<Candidates> {
         let [kx, ky, kz] = ray.axes;
         let z = L::load(&self.vertices[kz]).sub(ray.origin[2]);
         let x = L::load(&self.vertices[kx]).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
@@ -107,19 +114,44 @@ impl Leaf {
         let negative = greatest.at_most(zero) & self.used();
         let positive = zero.at_most(least) & self.used();
         if negative | positive == 0 {
-            return 0;
+            return None;
         }
         // Behind the origin is what has a numerator of t with another sign than the denominator; where an edge
         // function is zero, the exact one will tell.
         let t = u.mul(z.pick(a)).add(v.mul(z.pick(b))).add(w.mul(z.pick(c))).mul(ray.shear[2]);
-        negative & (t.at_most(zero) | zero.at_most(greatest))
-            | positive & (zero.at_most(t) | least.at_most(zero))
+        let mask = negative & (t.at_most(zero) | zero.at_most(greatest))
+            | positive & (zero.at_most(t) | least.at_most(zero));
+        let eight = |lanes: L| {
+            let mut eight = Eight([0.0; 8]);
+            lanes.store(&mut eight);
+            eight
+        };
+        (mask != 0).then(|| Candidates {
+            mask,
+            edges: [eight(u), eight(v), eight(w)],
+            t_numerators: eight(t),
+        })
     }
 
     /// A bit for each triangle.
     #[inline(always)]
     fn used(&self) -> u32 {
         (1 << self.count) - 1
+    }
+}
+
+impl Candidates {
+    /// The next one, lowest first, with its lane.
+    #[inline(always)]
+    pub fn next(&mut self) -> Option<(usize, EdgeHit)> {
+        if self.mask == 0 {
+            return None;
+        }
+        let lane = self.mask.trailing_zeros() as usize & 7;
+        self.mask &= self.mask - 1;
+        let [u, v, w] = &self.edges;
+        let edges = Vec3A::new(u.0[lane], v.0[lane], w.0[lane]);
+        Some((lane, EdgeHit { edges, t_numerator: self.t_numerators.0[lane] }))
     }
 }
 
@@ -130,7 +162,7 @@ impl<L: Lanes> LeafRay<L> {
         Self {
             origin: [L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)],
             shear: [L::splat(shear.x), L::splat(shear.y), L::splat(shear.z)],
-            axes: cast.axes,
+            axes: cast.turn.axes(),
         }
     }
 }

@@ -245,11 +245,15 @@ pub(super) trait WithLanes {
 pub(super) fn with_best<W: WithLanes>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
-        #[target_feature(enable = "avx2,fma")]
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2")]
         fn run<W: WithLanes>(work: W) -> W::Output {
             work.run::<Avx2>()
         }
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        if is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+        {
             // The features were found just now.
             return unsafe { run(work) };
         }

@@ -1,8 +1,8 @@
 //! Boxes of eight children.
 
 use super::machine::{Eight, Lanes};
+use crate::geometry::Bounds;
 use crate::geometry::triangle::{OUTER_PADDING, Slabs, padded};
-use crate::geometry::{Bounds, Ray};
 
 /// The boxes of eight children and where they are: four cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -70,8 +70,7 @@ impl Node {
 
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
-    pub fn new(ray: &Ray) -> Self {
-        let slabs = Slabs::new(ray.origin.into(), ray.direction.into());
+    pub fn new(slabs: &Slabs) -> Self {
         let [entered, left] = slabs.outer_origins();
         let inverse = slabs.inverse_direction;
         let (entered, left) = (-(entered * inverse), -(left * inverse));

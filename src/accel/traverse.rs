@@ -1,6 +1,6 @@
 //! Walks the tree: nearer children first, popped children culled again against the best hit so far.
 
-use super::leaf::{Leaf, LeafRay};
+use super::leaf::{Candidates, Leaf, LeafRay};
 use super::machine::{Eight, Lanes, Stack, WithLanes, with_best};
 use super::node::{Child, Node, NodeRay};
 use super::{Accel, Hit, MAX_DEPTH, TriangleId};
@@ -97,15 +97,14 @@ impl Accel {
     #[inline(always)]
     fn walk<L: Lanes>(
         &self,
-        ray: &Ray,
         cast: &RayCast,
         t_max: &mut f32,
-        mut visit: impl FnMut(&Leaf, usize, u32, &mut f32) -> bool,
+        mut visit: impl FnMut(&Leaf, usize, Candidates, &mut f32) -> bool,
     ) -> bool {
         if self.nodes.is_empty() {
             return false;
         }
-        let (node_ray, leaf_ray) = (NodeRay::<L>::new(ray), LeafRay::<L>::new(cast));
+        let (node_ray, leaf_ray) = (NodeRay::<L>::new(&cast.outer), LeafRay::<L>::new(cast));
         let mut stack = Stack::new();
         let mut next = Some(Child::node(0));
         while let Some(child) = next {
@@ -118,8 +117,9 @@ impl Accel {
                 }
             } else if let Some(index) = child.as_leaf() {
                 let leaf = &self.leaves[index];
-                let candidates = leaf.candidates(&leaf_ray);
-                if candidates != 0 && visit(leaf, index, candidates, t_max) {
+                if let Some(candidates) = leaf.candidates(&leaf_ray)
+                    && visit(leaf, index, candidates, t_max)
+                {
                     return true;
                 }
             }
@@ -127,16 +127,6 @@ impl Accel {
         }
         false
     }
-}
-
-/// The lanes of a mask, lowest first.
-#[inline(always)]
-fn lanes_of(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < 8).then_some(lane)
-    })
 }
 
 struct Closest<'a> {
@@ -154,15 +144,10 @@ impl WithLanes for Closest<'_> {
         let cast = RayCast::new(ray);
         let mut best: Option<Hit> = None;
         let mut t_max = ray.t_max;
-        accel.walk::<L>(ray, &cast, &mut t_max, |leaf, index, candidates, t_max| {
-            let mut rest = candidates;
-            while rest != 0 {
-                let lane = rest.trailing_zeros() as usize & 7;
-                rest &= rest - 1;
-                let Some(found) = cast.triangle_in_order(leaf.triangle_in_order(lane, cast.axes), *t_max)
-                else {
-                    continue;
-                };
+        accel.walk::<L>(&cast, &mut t_max, |leaf, index, mut candidates, t_max| {
+            while let Some((lane, edges)) = candidates.next() {
+                let turned = leaf.turned_triangle(lane, cast.turn.axes());
+                let Some(found) = cast.settle(edges, turned, *t_max) else { continue };
                 let triangle = accel.ids[index][lane];
                 let tied = best.is_some_and(|b| found.t == b.t && triangle > b.triangle);
                 if !tied && !ignored.contains(triangle) {
@@ -191,11 +176,14 @@ impl WithLanes for Occluded<'_> {
         let Self { accel, ray, ignored } = self;
         let cast = RayCast::new(ray);
         let mut t_max = ray.t_max;
-        accel.walk::<L>(ray, &cast, &mut t_max, |leaf, index, candidates, t_max| {
-            lanes_of(candidates).any(|lane| {
-                !ignored.contains(accel.ids[index][lane])
-                    && cast.triangle_in_order(leaf.triangle_in_order(lane, cast.axes), *t_max).is_some()
-            })
+        accel.walk::<L>(&cast, &mut t_max, |leaf, index, mut candidates, t_max| {
+            while let Some((lane, edges)) = candidates.next() {
+                let turned = leaf.turned_triangle(lane, cast.turn.axes());
+                if !ignored.contains(accel.ids[index][lane]) && cast.settle(edges, turned, *t_max).is_some() {
+                    return true;
+                }
+            }
+            false
         })
     }
 }

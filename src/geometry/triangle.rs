@@ -11,24 +11,30 @@
 //!
 //! Rounding never turns the sign of an edge function, it can only make it zero: of two products, the greater is
 //! never rounded below the lesser. A test of many triangles at once may therefore drop those whose edge functions
-//! differ in sign, and leave the others to [`RayCast::triangle`], which alone decides.
+//! differ in sign, and leave the others to [`RayCast::settle`], which alone decides.
 
-use glam::{BVec3A, Vec3, Vec3A};
+use glam::{BVec3A, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{Bounds, Ray};
 
-/// What of a ray the triangle test needs, computed once. Vectors are in the order of [`RayCast::axes`].
+/// What of a ray the triangle test needs, computed once. Vectors are turned.
 #[derive(Clone, Copy, Debug)]
 pub struct RayCast {
-    /// The axes that become x, y and z: z is the one along which the direction is greatest.
-    pub axes: [usize; 3],
+    /// What makes z the axis along which the direction is greatest.
+    pub turn: Turn,
     /// Where the ray starts.
     pub origin: Vec3A,
     /// The x and y components of the direction over the greatest, and one over the greatest.
     pub shear: Vec3A,
+    /// Distances to the planes of boxes around others; not turned.
+    pub outer: Slabs,
     /// Distances to the planes of triangles' boxes.
     slabs: Slabs,
 }
+
+/// A cyclic exchange of the axes: which one becomes z.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn(usize);
 
 /// The slab test of a ray: a plane at `p` along an axis is at the distance `(p - origin) inverse`.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +46,15 @@ pub struct Slabs {
     origin: Vec3A,
     /// What the origin is moved by, away from the planes that are entered.
     away: Vec3A,
+}
+
+/// What the edge functions say of a ray and a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeHit {
+    /// U, V and W: none has another sign than the others.
+    pub edges: Vec3A,
+    /// U Az + V Bz + W Cz, times the last component of the shear: t times the determinant.
+    pub t_numerator: f32,
 }
 
 /// A ray that meets a triangle.
@@ -69,59 +84,86 @@ const FAR_WIDENING: f32 = 1.0 + 2.0 * (3.0 * UNIT / (1.0 - 3.0 * UNIT));
 /// triangle's), 5 of |origin|, and 6 of either for the widening. 11 of each, within the 16 that this adds.
 pub const OUTER_PADDING: f32 = 3.0;
 
-/// x, y, z for each axis that may be the greatest.
-const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+impl Turn {
+    /// The one that makes the greatest component of a direction, the first of several, the last.
+    #[inline]
+    fn to_greatest(direction: Vec3) -> Self {
+        let d = direction.abs();
+        // Without branches: no one could predict them.
+        let x_or_y = usize::from(d.y > d.x);
+        Self(if d.z > d.x.max(d.y) { 2 } else { x_or_y })
+    }
+
+    /// The axes that become x, y and z.
+    #[inline]
+    pub fn axes(self) -> [usize; 3] {
+        const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+        AXES[self.0]
+    }
+
+    #[inline]
+    fn apply(self, v: Vec3A) -> Vec3A {
+        let is = |axis: usize| BVec3A::splat(self.0 == axis);
+        Vec3A::select(is(0), v.yzx(), Vec3A::select(is(1), v.zxy(), v))
+    }
+}
 
 impl RayCast {
     /// Prepares a ray.
     #[inline]
     pub fn new(ray: &Ray) -> Self {
-        let d = ray.direction.abs();
-        // The first of the greatest, without a branch that no one could predict.
-        let x_or_y = usize::from(d.y > d.x);
-        let greatest = if d.z > d.x.max(d.y) { 2 } else { x_or_y };
-        let axes = AXES[greatest];
-        let direction = in_order(ray.direction, axes);
-        let inverse = 1.0 / direction.z;
-        let origin = in_order(ray.origin, axes);
-        Self {
-            axes,
-            origin,
-            shear: Vec3A::new(direction.x * inverse, direction.y * inverse, inverse),
-            slabs: Slabs::new(origin, direction),
-        }
+        let turn = Turn::to_greatest(ray.direction);
+        let outer = Slabs::new(ray.origin.into(), ray.direction.into());
+        let slabs = outer.turned(turn);
+        let inverse = slabs.inverse_direction.z;
+        let shear = (turn.apply(ray.direction.into()) * inverse).with_z(inverse);
+        Self { turn, origin: slabs.origin, shear, outer, slabs }
     }
 
     /// Meets a triangle before or at `t_max`.
     pub fn triangle(&self, v: &[Vec3; 3], t_max: f32) -> Option<TriangleHit> {
-        self.triangle_in_order(v.map(|p| in_order(p, self.axes)), t_max)
+        let turned = v.map(|p| self.turn.apply(p.into()));
+        let sheared = turned.map(|p| self.sheared(p));
+        let edges = edge_functions(&sheared);
+        let is_mixed = edges.min_element() < 0.0 && edges.max_element() > 0.0;
+        let hit = EdgeHit { edges, t_numerator: self.t_numerator(edges, &sheared) };
+        if is_mixed { None } else { self.settle(hit, turned, t_max) }
     }
 
-    /// Meets a triangle, whose vertices have the order of [`RayCast::axes`], before or at `t_max`.
+    /// Meets a triangle at `t_max` or before, given the turned vertices, and edge functions that do not differ in sign.
     ///
     /// The distance is brought into the span of the triangle's own box, so that whether and where a triangle is
     /// hit depends on the triangle alone and never on the boxes of a hierarchy around it.
-    #[inline]
-    pub fn triangle_in_order(&self, v: [Vec3A; 3], t_max: f32) -> Option<TriangleHit> {
-        let sheared = [self.sheared(v[0]), self.sheared(v[1]), self.sheared(v[2])];
-        let mut edges = edge_functions(&sheared);
-        if edges.x == 0.0 || edges.y == 0.0 || edges.z == 0.0 {
-            edges = exact_edge_functions(&sheared);
+    #[inline(always)]
+    pub fn settle(&self, mut hit: EdgeHit, turned: [Vec3A; 3], t_max: f32) -> Option<TriangleHit> {
+        if hit.edges.cmpeq(Vec3A::ZERO).any() {
+            hit = self.exact(&turned);
         }
-        let is_mixed = edges.min_element() < 0.0 && edges.max_element() > 0.0;
+        let EdgeHit { edges, t_numerator } = hit;
         let determinant = edges.x + edges.y + edges.z;
-        if is_mixed || determinant == 0.0 {
-            return None;
-        }
-        let [a, b, c] = sheared;
-        let t = (edges.x * a.z + edges.y * b.z + edges.z * c.z) * self.shear.z / determinant;
-        let (near, far) = self.slabs.span(v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]))?;
+        let t = t_numerator / determinant;
+        let [a, b, c] = turned;
+        let (near, far) = self.slabs.span(a.min(b).min(c), a.max(b).max(c));
         let clamped = t.max(near).min(far);
-        (t > 0.0 && clamped > 0.0 && clamped <= t_max).then(|| TriangleHit {
+        // Without an area the determinant is zero and t no number or infinite.
+        let is_hit = t > 0.0 && t < f32::INFINITY && near <= far && clamped > 0.0 && clamped <= t_max;
+        is_hit.then(|| TriangleHit {
             t: clamped,
             barycentric: (edges / determinant).into(),
             from_front: (determinant > 0.0) == (self.shear.z > 0.0),
         })
+    }
+
+    #[cold]
+    fn exact(&self, turned: &[Vec3A; 3]) -> EdgeHit {
+        let sheared = turned.map(|p| self.sheared(p));
+        let edges = exact_edge_functions(&sheared);
+        EdgeHit { edges, t_numerator: self.t_numerator(edges, &sheared) }
+    }
+
+    #[inline]
+    fn t_numerator(&self, edges: Vec3A, [a, b, c]: &[Vec3A; 3]) -> f32 {
+        (edges.x * a.z + edges.y * b.z + edges.z * c.z) * self.shear.z
     }
 
     /// A point relative to the origin, sheared so that the ray is the z axis.
@@ -134,9 +176,8 @@ impl RayCast {
 }
 
 impl Slabs {
-    /// The slab test of a ray along any unit `direction`.
     #[inline]
-    pub fn new(origin: Vec3A, direction: Vec3A) -> Self {
+    fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let padding = Vec3A::splat(origin.abs().max_element() * PADDING);
         let negative = direction.cmplt(Vec3A::ZERO);
         Self {
@@ -147,6 +188,13 @@ impl Slabs {
         }
     }
 
+    #[inline]
+    fn turned(&self, turn: Turn) -> Self {
+        let inverse_direction = turn.apply(self.inverse_direction);
+        let negative = inverse_direction.cmplt(Vec3A::ZERO);
+        Self { inverse_direction, negative, origin: turn.apply(self.origin), away: turn.apply(self.away) }
+    }
+
     /// The origins from which the planes that are entered, and those that are left, of a box that was padded
     /// [`OUTER_PADDING`] times are seen.
     #[inline]
@@ -154,22 +202,16 @@ impl Slabs {
         [self.origin + self.away * OUTER_PADDING, self.origin - self.away * OUTER_PADDING]
     }
 
-    /// The distances at which the ray enters and leaves the box around a triangle, if it does.
+    /// The distances at which the ray enters and leaves the box around a triangle; the second is less if it does not.
     #[inline]
-    fn span(&self, min: Vec3A, max: Vec3A) -> Option<(f32, f32)> {
+    fn span(&self, min: Vec3A, max: Vec3A) -> (f32, f32) {
         let padding = min.abs().max(max.abs()).max_element() * PADDING;
         let (min, max) = (min - padding, max + padding);
         let (first, last) = (Vec3A::select(self.negative, max, min), Vec3A::select(self.negative, min, max));
         let near = (first - (self.origin + self.away)) * self.inverse_direction;
         let far = (last - (self.origin - self.away)) * self.inverse_direction;
-        let (near, far) = (near.max_element().max(0.0), far.min_element() * FAR_WIDENING);
-        (near <= far).then_some((near, far))
+        (near.max_element().max(0.0), far.min_element() * FAR_WIDENING)
     }
-}
-
-#[inline]
-fn in_order(p: Vec3, [x, y, z]: [usize; 3]) -> Vec3A {
-    Vec3A::new(p[x], p[y], p[z])
 }
 
 /// U, V and W.
@@ -277,7 +319,8 @@ mod tests {
             let away = Vec3::splat(10.0_f32.powi(far) - 1e-3);
             let slabs = Slabs::new((o + away).into(), d.normalize().into());
             let inner = Bounds::of_points([a + away, b + away, c + away]);
-            if let Some((near, far)) = slabs.span(inner.min.into(), inner.max.into()) {
+            let (near, far) = slabs.span(inner.min.into(), inner.max.into());
+            if near <= far {
                 for outer in [inner, inner.including(e + away)] {
                     for fused in [false, true] {
                         let (outer_near, outer_far) = outer_span(&slabs, outer, fused);
