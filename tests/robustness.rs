@@ -54,7 +54,15 @@ fn a_bad_frame_in_the_middle_is_named_and_leaves_the_others_alone() {
         let end = at + text[at..].find('\n').unwrap();
         format!("{}element {element} {count}{}", &text[..at], &text[end..]).into_bytes()
     };
-    let bad: [(&str, Vec<u8>, Blame, &[&str]); 13] = [
+    let with_x = |value: f32| {
+        let header = b"end_header\n";
+        let vertices = binary.windows(header.len()).position(|bytes| bytes == header).unwrap() + header.len();
+        // The second vertex, each having six numbers.
+        let mut bytes = binary.clone();
+        bytes[vertices + 24..][..4].copy_from_slice(&value.to_le_bytes());
+        bytes
+    };
+    let bad: [(&str, Vec<u8>, Blame, &[&str]); 17] = [
         ("nothing", Vec::new(), Blame::Data, &["empty"]),
         ("no mesh", b"solid box\n".to_vec(), Blame::Data, &["ply"]),
         ("half a header", text.as_bytes()[..60].to_vec(), Blame::Data, &["end_header"]),
@@ -63,6 +71,10 @@ fn a_bad_frame_in_the_middle_is_named_and_leaves_the_others_alone() {
         ("no last byte", binary[..binary.len() - 1].to_vec(), Blame::Data, &["truncated"]),
         ("NaN", text.replacen("-0.8", "nan", 1).into_bytes(), Blame::Data, &["line 12: ", "finite"]),
         ("infinity", text.replacen("-0.8", "inf", 1).into_bytes(), Blame::Data, &["line 12: ", "finite"]),
+        ("NaN in binary data", with_x(f32::NAN), Blame::Data, &["vertex 1", "NaN", "finite"]),
+        ("infinity in binary data", with_x(f32::NEG_INFINITY), Blame::Data, &["vertex 1", "inf", "finite"]),
+        ("far out in binary data", with_x(1e30), Blame::Data, &["vertex 1", "e30 m", "frames.scale"]),
+        ("far out", text.replacen("-0.8", "-1e300", 1).into_bytes(), Blame::Data, &["vertex 0", "1e300 m"]),
         ("an index too many", text.replace("3 0 2 3", "3 0 2 8").into_bytes(), Blame::Data, &["face 0", "8"]),
         (
             "a negative index",

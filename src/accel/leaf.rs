@@ -8,7 +8,7 @@ use glam::{Vec3, Vec3A};
 
 use super::TriangleId;
 use super::machine::{Eight, Lanes};
-use crate::geometry::triangle::{EdgeHit, RayCast};
+use crate::geometry::triangle::{EdgeHit, GREATEST_NUMERATOR, LEAST_NUMERATOR, RayCast};
 
 /// Up to eight triangles over up to eight vertices: two cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -117,20 +117,18 @@ impl Leaf {
             return None;
         }
         // Behind the origin is what has a numerator of t with another sign than the denominator; where an edge
-        // function is zero, the exact one will tell.
+        // function is zero or the numerator out of range, even no number, the exact ones will tell.
         let t = u.mul(z.pick(a)).add(v.mul(z.pick(b))).add(w.mul(z.pick(c))).mul(ray.shear[2]);
-        let mask = negative & (t.at_most(zero) | zero.at_most(greatest))
-            | positive & (zero.at_most(t) | least.at_most(zero));
+        let within = |low: f32, high: f32| L::splat(low).at_most(t) & t.at_most(L::splat(high));
+        let above = within(LEAST_NUMERATOR, GREATEST_NUMERATOR);
+        let below = within(-GREATEST_NUMERATOR, -LEAST_NUMERATOR);
+        let mask = negative & (!above | zero.at_most(greatest)) | positive & (!below | least.at_most(zero));
         let eight = |lanes: L| {
             let mut eight = Eight([0.0; 8]);
             lanes.store(&mut eight);
             eight
         };
-        (mask != 0).then(|| Candidates {
-            mask,
-            edges: [eight(u), eight(v), eight(w)],
-            t_numerators: eight(t),
-        })
+        Some(Candidates { mask, edges: [eight(u), eight(v), eight(w)], t_numerators: eight(t) })
     }
 
     /// A bit for each triangle.

@@ -77,6 +77,12 @@ impl Accel {
         self.bounds
     }
 
+    /// Where every ray begins.
+    #[inline]
+    fn root(&self) -> Option<Child> {
+        (!self.nodes.is_empty()).then(|| Child::node(0))
+    }
+
     /// Bytes that the hierarchy occupies.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + size_of_val(&*self.ids)

@@ -12,8 +12,12 @@
 //! Rounding never turns the sign of an edge function, it can only make it zero: of two products, the greater is
 //! never rounded below the lesser. A test of many triangles at once may therefore drop those whose edge functions
 //! differ in sign, and leave the others to [`RayCast::settle`], which alone decides.
+//!
+//! The numerator of t is a product of three lengths. Where it leaves the range of single precision, which it does among
+//! lengths from about 1e12 m and to about 1e-10 m, it is taken in double precision; coordinates from 1e-15 m to 1e18 m
+//! are valid.
 
-use glam::{BVec3A, Vec3, Vec3A, Vec3Swizzles};
+use glam::{BVec3A, DVec3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{Bounds, Ray};
 
@@ -57,6 +61,13 @@ pub struct EdgeHit {
     pub t_numerator: f32,
 }
 
+impl EdgeHit {
+    #[inline(always)]
+    fn determinant(&self) -> f32 {
+        self.edges.x + self.edges.y + self.edges.z
+    }
+}
+
 /// A ray that meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
@@ -83,6 +94,12 @@ const FAR_WIDENING: f32 = 1.0 + 2.0 * (3.0 * UNIT / (1.0 - 3.0 * UNIT));
 /// against the triangle's own they may be off by 5 units of |p| (one for each of two roundings, three for the
 /// triangle's), 5 of |origin|, and 6 of either for the widening. 11 of each, within the 16 that this adds.
 pub const OUTER_PADDING: f32 = 3.0;
+
+/// Numerators of t below this are computed again in double precision, since their parts may have underflowed: above it
+/// underflow changes them by less than their rounding, and never their sign.
+pub const LEAST_NUMERATOR: f32 = 1e-30;
+/// Those above this too, since their parts may have overflowed.
+pub const GREATEST_NUMERATOR: f32 = 1e38;
 
 impl Turn {
     /// The one that makes the greatest component of a direction, the first of several, the last.
@@ -135,13 +152,14 @@ impl RayCast {
     /// The distance is brought into the span of the triangle's own box, so that whether and where a triangle is
     /// hit depends on the triangle alone and never on the boxes of a hierarchy around it.
     #[inline(always)]
-    pub fn settle(&self, mut hit: EdgeHit, turned: [Vec3A; 3], t_max: f32) -> Option<TriangleHit> {
-        if hit.edges.cmpeq(Vec3A::ZERO).any() {
-            hit = self.exact(&turned);
-        }
-        let EdgeHit { edges, t_numerator } = hit;
+    pub fn settle(&self, hit: EdgeHit, turned: [Vec3A; 3], t_max: f32) -> Option<TriangleHit> {
+        let is_in_range = (LEAST_NUMERATOR..=GREATEST_NUMERATOR).contains(&hit.t_numerator.abs());
+        let (edges, t) = if is_in_range && !hit.edges.cmpeq(Vec3A::ZERO).any() {
+            (hit.edges, hit.t_numerator / hit.determinant())
+        } else {
+            self.exact(&turned)
+        };
         let determinant = edges.x + edges.y + edges.z;
-        let t = t_numerator / determinant;
         let [a, b, c] = turned;
         let (near, far) = self.slabs.span(a.min(b).min(c), a.max(b).max(c));
         let clamped = t.max(near).min(far);
@@ -154,11 +172,14 @@ impl RayCast {
         })
     }
 
+    /// Edge functions and t in double precision, whose range no product of three coordinates leaves.
     #[cold]
-    fn exact(&self, turned: &[Vec3A; 3]) -> EdgeHit {
+    fn exact(&self, turned: &[Vec3A; 3]) -> (Vec3A, f32) {
         let sheared = turned.map(|p| self.sheared(p));
         let edges = exact_edge_functions(&sheared);
-        EdgeHit { edges, t_numerator: self.t_numerator(edges, &sheared) }
+        let depths = DVec3::from(sheared.map(|p| f64::from(p.z)));
+        let depth = edges.as_dvec3().dot(depths) / edges.as_dvec3().element_sum();
+        (edges, depth as f32 * self.shear.z)
     }
 
     #[inline]

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use super::path::{HARD_LIMIT, Sample};
+use super::path::Sample;
 use crate::accel::Ignored;
 use crate::geometry::Ray;
 use crate::light::{LightSample, balance};
@@ -76,40 +76,47 @@ impl Sample<'_> {
     /// Transmittance times (n_a / n_b)^2 of the boundaries on the straight way to a light; zero when blocked.
     fn visibility(&mut self, receiver: &Receiver, light: &LightSample) -> Lanes {
         let origin = receiver.normal.map_or(receiver.position, |hit| hit.point.spawn(hit.ng, light.wi));
-        let mut ray = Ray { origin, direction: light.wi, t_max: light.distance };
-        let source = light.triangle.unwrap_or(u32::MAX);
-        let mut ignored = Ignored([receiver.leaves, source]);
-        let mut medium = receiver.medium;
-        let mut visible = Lanes::ONE;
-        for _ in 0..HARD_LIMIT {
-            self.scratch.counters.shadow_rays += 1;
-            let coefficients = self.scratch.media[medium.0 as usize];
-            if !self.frame.needs.matched_interfaces {
-                let blocked = self.ends_in_the_dark(&ray, medium) || self.frame.accel.occluded(&ray, ignored);
-                return if blocked { Lanes::ZERO } else { visible * coefficients.transmittance(ray.t_max) };
-            }
-            let Some(hit) = self.frame.accel.closest(&ray, ignored) else {
-                return if self.ends_in_the_dark(&ray, medium) {
-                    Lanes::ZERO
-                } else {
-                    visible * coefficients.transmittance(ray.t_max)
-                };
-            };
-            let Surface::Interface(pair) = self.frame.surface(hit.triangle) else {
-                return Lanes::ZERO;
-            };
-            if !pair.matched {
-                return Lanes::ZERO;
-            }
+        let ray = Ray { origin, direction: light.wi, t_max: light.distance };
+        let ignored = Ignored([receiver.leaves, light.triangle.unwrap_or(u32::MAX)]);
+        self.scratch.counters.shadow_rays += 1;
+        let blocked = if self.frame.needs.matched_interfaces {
+            self.find_crossings(&ray, ignored)
+        } else {
+            self.frame.accel.occluded(&ray, ignored)
+        };
+        if blocked { Lanes::ZERO } else { self.transmittance(receiver.medium, &ray) }
+    }
+
+    /// Lists the index-matched boundaries that a ray crosses; true when something else blocks it.
+    fn find_crossings(&mut self, ray: &Ray, ignored: Ignored) -> bool {
+        let frame = self.frame;
+        let crossings = &mut self.scratch.crossings;
+        crossings.clear();
+        let mut blocked = false;
+        frame.accel.each_hit(ray, ignored, |hit| {
+            blocked = !matches!(frame.surface(hit.triangle), Surface::Interface(pair) if pair.matched);
+            crossings.push(hit);
+            blocked
+        });
+        crossings.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        blocked
+    }
+
+    /// What is left of light along a ray that begins in `medium` and crosses the boundaries that were found.
+    fn transmittance(&self, mut medium: MediumId, ray: &Ray) -> Lanes {
+        let mut left = Lanes::ONE;
+        let mut travelled = 0.0;
+        for hit in &self.scratch.crossings {
+            let Surface::Interface(pair) = self.frame.surface(hit.triangle) else { continue };
             let (a, b) = pair.crossed(hit.from_front);
-            visible *= coefficients.transmittance(hit.t) * self.index_factor(a, b);
-            medium = b;
-            let surface = self.frame.geometry.surface_hit(&hit, light.wi);
-            ray.origin = surface.point.spawn(surface.ng, light.wi);
-            ray.t_max -= hit.t;
-            ignored = Ignored([hit.triangle, source]);
+            left *= self.scratch.media[medium.0 as usize].transmittance(hit.t - travelled);
+            left *= self.index_factor(a, b);
+            (medium, travelled) = (b, hit.t);
         }
-        Lanes::ZERO
+        if self.ends_in_the_dark(ray, medium) {
+            return Lanes::ZERO;
+        }
+        left * self.scratch.media[medium.0 as usize].transmittance(ray.t_max - travelled)
     }
 
     /// True when the ray runs to infinity in a medium without end.

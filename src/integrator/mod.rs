@@ -15,6 +15,7 @@ pub use ambient_occlusion::AmbientOcclusion;
 pub use counters::Counters;
 pub use path::PathTracer;
 
+use crate::accel::Hit;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
@@ -49,6 +50,8 @@ pub struct Scratch {
     pub(crate) media: Vec<MediumLanes>,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
+    /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
+    pub(crate) crossings: Vec<Hit>,
     /// Events of all samples so far.
     pub counters: Counters,
 }

@@ -10,8 +10,7 @@ use super::normals::is_reversed;
 
 /// The class of every corner (three a triangle, in order), and the number of classes.
 pub(super) fn corner_classes(mesh: &RawMesh, group: &[u32]) -> (Vec<u32>, usize) {
-    let corner_count = 3 * mesh.triangles.len() as u32;
-    let mut sets = DisjointSets::new(corner_count);
+    let mut sets = DisjointSets::new(3 * mesh.triangles.len() as u32);
     let edges = HalfEdges::by_least_vertex(mesh);
     let mut bucket = Vec::new();
     for least in 0..mesh.positions.len() {
@@ -27,23 +26,7 @@ pub(super) fn corner_classes(mesh: &RawMesh, group: &[u32]) -> (Vec<u32>, usize)
             }
         }
     }
-    number_sets(&mut sets, corner_count)
-}
-
-/// Numbers the sets 0, 1, 2, ... in order of their least members.
-fn number_sets(sets: &mut DisjointSets, len: u32) -> (Vec<u32>, usize) {
-    let mut numbers: Vec<u32> = Vec::with_capacity(len as usize);
-    let mut count = 0;
-    for member in 0..len {
-        let least = sets.find(member);
-        if least == member {
-            numbers.push(count);
-            count += 1;
-        } else {
-            numbers.push(numbers[least as usize]);
-        }
-    }
-    (numbers, count as usize)
+    sets.into_numbers()
 }
 
 /// The edges of all triangles, listed at the lesser of their two vertices. Half-edge 3 t + k leaves corner k of

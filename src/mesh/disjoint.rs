@@ -31,6 +31,18 @@ impl DisjointSets {
         let (a, b) = (self.find(a), self.find(b));
         self.parents[a.max(b) as usize] = a.min(b);
     }
+
+    /// The number of each member's set, 0, 1, 2, ... in order of their least members, and how many sets there are.
+    pub fn into_numbers(mut self) -> (Vec<u32>, usize) {
+        let mut count = 0;
+        for member in 0..self.parents.len() {
+            // A parent is less than its member, and so numbered already.
+            let parent = self.parents[member] as usize;
+            self.parents[member] = if parent == member { count } else { self.parents[parent] };
+            count += u32::from(parent == member);
+        }
+        (self.parents, count as usize)
+    }
 }
 
 #[cfg(test)]
@@ -47,6 +59,7 @@ mod tests {
             }
             let found: Vec<u32> = (0..10).map(|member| sets.find(member)).collect();
             assert_eq!(found, [0, 1, 1, 1, 4, 5, 6, 1, 8, 1]);
+            assert_eq!(sets.into_numbers(), (vec![0, 1, 1, 1, 2, 3, 4, 1, 5, 1], 6));
         }
     }
 }

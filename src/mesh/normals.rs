@@ -20,12 +20,16 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::corner_classes::corner_classes;
 use super::{CornerNormals, Interface, RawMesh};
 
 /// Below this part of the sum of its weights a sum of unit normals is rounding noise.
 const CANCELLED: f64 = 1e-9;
+
+/// Triangles whose normals and angles are computed at a time, on all threads; they are summed in order.
+const BLOCK: usize = 1 << 16;
 
 /// One number a triangle, equal for triangles that may share normals: same two regions, same wall.
 ///
@@ -58,16 +62,16 @@ pub fn group_keys(triangle_count: usize, interfaces: &[Interface], walls: &[u32]
 pub fn smooth(mesh: &RawMesh, group: &[u32]) -> CornerNormals {
     let (classes, class_count) = corner_classes(mesh, group);
     let mut sums = vec![(DVec3::ZERO, 0.0); class_count];
-    for (i, triangle) in mesh.triangles.iter().enumerate() {
-        let Some(normal) = face_normal(mesh, triangle) else {
-            continue;
-        };
-        let normal = if is_reversed(mesh, i) { -normal } else { normal };
-        for k in 0..3 {
-            let angle = corner_angle(mesh, triangle, k);
-            let sum = &mut sums[classes[3 * i + k] as usize];
-            sum.0 += angle * normal;
-            sum.1 += angle;
+    let mut block = Vec::new();
+    for first in (0..mesh.triangles.len()).step_by(BLOCK) {
+        let triangles = first..mesh.triangles.len().min(first + BLOCK);
+        triangles.into_par_iter().map(|i| weighted_normal(mesh, i)).collect_into_vec(&mut block);
+        for (i, (normal, angles)) in (first..).zip(&block) {
+            for (k, angle) in angles.iter().enumerate() {
+                let sum = &mut sums[classes[3 * i + k] as usize];
+                sum.0 += *angle * *normal;
+                sum.1 += angle;
+            }
         }
     }
     indexed(mesh, &classes, &sums)
@@ -159,13 +163,18 @@ fn face_normal(mesh: &RawMesh, triangle: &[u32; 3]) -> Option<DVec3> {
     if scale > 0.0 && scale.is_finite() { unit((u / scale).cross(v / scale)) } else { None }
 }
 
-/// The angle of a triangle at corner `k`, in radians.
-fn corner_angle(mesh: &RawMesh, triangle: &[u32; 3], k: usize) -> f64 {
-    let at = |step: usize| mesh.positions[triangle[(k + step) % 3] as usize];
-    match (unit(at(1) - at(0)), unit(at(2) - at(0))) {
-        (Some(u), Some(v)) => libm::atan2(u.cross(v).length(), u.dot(v)),
+/// The unit normal of a triangle into the lesser label and its angles in radians; zeros for a degenerate triangle.
+fn weighted_normal(mesh: &RawMesh, triangle: usize) -> (DVec3, [f64; 3]) {
+    let Some(normal) = face_normal(mesh, &mesh.triangles[triangle]) else { return (DVec3::ZERO, [0.0; 3]) };
+    let [a, b, c] = mesh.triangles[triangle].map(|index| mesh.positions[index as usize]);
+    let edges = [unit(b - a), unit(c - b), unit(a - c)];
+    let angle = |k: usize| match (edges[k], edges[(k + 2) % 3]) {
+        (Some(leaving), Some(arriving)) => {
+            libm::atan2(leaving.cross(arriving).length(), -leaving.dot(arriving))
+        }
         _ => 0.0,
-    }
+    };
+    (if is_reversed(mesh, triangle) { -normal } else { normal }, [angle(0), angle(1), angle(2)])
 }
 
 /// `v` at unit length; `None` when it is zero or not finite.
