@@ -62,7 +62,7 @@ fn write_ring(file: File) -> std::io::Result<()> {
 #[test]
 #[ignore = "takes half a minute and three gigabytes"]
 fn ten_million_triangles_are_read_built_and_rendered() {
-    let folder = Folder::with_scene(&scene("[render]\nsamples = 256\n"));
+    let folder = Folder::with_scene(&scene("[render]\nsamples = 8192\n"));
     fs::create_dir_all(folder.path("frames")).unwrap();
     write_ring(File::create(folder.path("frames/frame_0001.ply")).unwrap()).unwrap();
     let report = folder.render(RenderOptions::default());

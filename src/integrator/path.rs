@@ -13,6 +13,7 @@ use super::direct::Receiver;
 use super::{EyeSample, FirstHit, Scratch};
 use crate::accel::{Hit, Ignored};
 use crate::geometry::Ray;
+use crate::geometry::triangle::scaled_normal;
 use crate::optics::medium::{FreeFlight, MediumId};
 use crate::optics::phase::one_minus_cos;
 use crate::sampling::SampleStream;
@@ -180,11 +181,11 @@ impl Sample<'_> {
     /// The surface that the path meets next.
     ///
     /// A ray that leaves an interface starts at the very point, so that it cannot jump over a sheet in the wedge where
-    /// several meet. Rounding may put the point on the wrong side of a neighbour, and at the edges of wedges it decides
-    /// which sheet seems nearest; the labels tell which is meant. One that does not belong to the path's medium is looked
-    /// through at the very start, and gives way elsewhere to one that does and is as far away.
+    /// several meet. Rounding may put the point on the wrong side of a neighbour, or the ray on the wrong side of an edge,
+    /// and at the edges of wedges it decides which sheet seems nearest; the labels tell which is meant. One that does
+    /// not belong to the path's medium is looked through where rounding alone may have made it be met, and gives way
+    /// elsewhere to one that does belong and is as far away.
     fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
-        let slack = 4.0 * rounding(ray.origin, 0.0);
         let (mut from, mut passed) = (*ray, 0.0);
         let mut ignored = Ignored::one(branch.leaves);
         let mut found = self.frame.accel.closest(&from, ignored);
@@ -195,7 +196,7 @@ impl Sample<'_> {
                 found = Some(other);
                 break;
             }
-            if passed + hit.t > slack {
+            if !self.is_met_by_rounding(ray, passed + hit.t, &hit) {
                 break;
             }
             passed += hit.t;
@@ -204,6 +205,19 @@ impl Sample<'_> {
             found = self.frame.accel.closest(&from, ignored);
         }
         found.map(|hit| Hit { t: passed + hit.t, ..hit })
+    }
+
+    /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for rounding.
+    fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
+        let slack = 4.0 * rounding(ray.origin, t);
+        let v = self.frame.geometry.vertices(hit.triangle);
+        let scaled = scaled_normal(&v);
+        let doubled_area = scaled.length();
+        // Height over the plane, and distances from the edges, both times twice the area.
+        let height = t * scaled.dot(ray.direction).abs();
+        let edges = Vec3::new((v[2] - v[1]).length(), (v[0] - v[2]).length(), (v[1] - v[0]).length());
+        let from_edges = hit.barycentric * doubled_area * doubled_area / edges;
+        height.min(from_edges.min_element()) <= slack * doubled_area
     }
 
     /// A boundary of the path's medium that is as far away as `found`, which is none.
