@@ -1,73 +1,151 @@
-//! Builds binary trees with obvhs, one for each scale of triangles, and hangs them under one node.
+//! Builds binary trees over clusters of triangles with obvhs, one for each scale, and hangs them under one node.
+//!
+//! Triangles that never change come first: their nodes and leaves do too, so that those of the others can be cut off
+//! and made anew behind them.
 
+use glam::Vec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use glam::Vec3;
-
-use super::collapse::{Collapse, Soup};
+use super::clusters::{Cluster, clusters};
+use super::collapse::Collapse;
 use super::leaf::{Leaf, LeafIds};
 use super::node::{Child, Node};
+use super::scales::Scale;
 use super::{Accel, MAX_DEPTH, TriangleId};
 use crate::geometry::Bounds;
 use crate::geometry::triangle::triangle_bounds;
 
-/// Parts of the tree that reinsertion tries to place better.
+/// Part of the binary tree that reinsertion tries to place better, mostly at the top. Rays were as fast with 0.02 and
+/// 0.2 to within what could be measured.
 const REINSERTION_RATIO: f32 = 0.05;
 
-/// Triangles more than this many times larger than the median have a tree of their own, and so on upwards.
-const SCALE_STEP: f32 = 16.0;
+/// Trees that still triangles are spread over, at most: the others have the rest of the root's places.
+const STILL_SCALES: usize = 3;
 
-/// Trees that the triangles are spread over, at most.
-const MOST_SCALES: usize = Node::WIDTH;
+/// The part of the hierarchy that stays when the rest is built anew.
+#[derive(Clone, Debug)]
+pub(super) struct Still {
+    /// Numbers of triangles, nodes, and leaves, all of which come first.
+    pub triangles: usize,
+    pub nodes: usize,
+    pub leaves: usize,
+    /// The root without the others.
+    pub root: Node,
+    pub bounds: Bounds,
+}
+
+/// The triangles that a tree is made over.
+#[derive(Clone, Copy)]
+pub(super) struct Soup<'a> {
+    pub positions: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
+}
 
 impl Accel {
     /// Builds the hierarchy over `triangles` (index triples into `positions`, all finite and in range).
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let mut accel = Self { triangles: triangles.len(), ..Self::default() };
-        if triangles.is_empty() {
-            return accel;
-        }
-        let soup = Soup { positions, triangles };
-        let scales = by_scale(soup);
-        accel.over_scales(soup, &scales);
-        if accel.depth() > MAX_DEPTH {
-            accel.clear();
-            accel.balanced(soup, &scales.concat());
-        }
+        Self::build_over(positions, triangles, 0)
+    }
+
+    /// Builds the hierarchy over triangles of which the first `still` are the same in every frame.
+    pub fn build_over(positions: &[Vec3], triangles: &[[u32; 3]], still: usize) -> Self {
+        let mut accel = Self::default();
+        accel.rebuild(positions, triangles, still);
         accel
     }
 
-    /// A tree for the triangles of each scale, all under one node.
-    fn over_scales(&mut self, soup: Soup, scales: &[Vec<TriangleId>]) {
-        if let [ids] = scales {
-            let binary = bvh2_of(soup, ids);
-            self.bounds = soup.around(ids);
-            let top = Collapse::new(soup, &binary, ids).append_to(self);
-            if top.as_leaf().is_some() {
-                let root = self.push_node();
-                self.nodes[root].hang(0, self.bounds, top);
-            }
-            return;
+    /// Builds the hierarchy over other triangles, the first `still` of which are those that it had: their part of it
+    /// stays as it is.
+    pub fn rebuild(&mut self, positions: &[Vec3], triangles: &[[u32; 3]], still: usize) {
+        debug_assert!(still <= triangles.len());
+        let soup = Soup { positions, triangles };
+        if still != self.still.triangles {
+            self.still = Still::NOTHING;
+            self.cut();
+            self.add_still(soup, still);
         }
-        let root = self.push_node();
-        for (lane, ids) in scales.iter().enumerate() {
-            let binary = bvh2_of(soup, ids);
-            let top = Collapse::new(soup, &binary, ids).append_to(self);
-            let bounds = soup.around(ids);
-            self.bounds = self.bounds.union(bounds);
-            self.nodes[root].hang(lane, bounds, top);
+        self.cut();
+        self.triangles = triangles.len();
+        self.built_cost = None;
+        let taken = self.still.lanes();
+        let scales = Scale::all(soup, still..triangles.len(), Node::WIDTH - taken);
+        match &*scales {
+            [] => {}
+            [scale] if taken == 0 => {
+                let (bounds, top) = self.append(soup, scale);
+                self.bounds = bounds;
+                if top.as_leaf().is_some() {
+                    let root = self.push_node();
+                    self.nodes[root].hang(0, bounds, top);
+                }
+            }
+            _ => self.hang_scales(soup, &scales, taken),
         }
     }
 
-    /// A tree that divides the given order by eight until leaves are small enough: its depth is log8 of the number
-    /// of triangles whatever their geometry.
-    fn balanced(&mut self, soup: Soup, order: &[TriangleId]) {
-        let root = self.push_node();
-        self.bounds = soup.around(order);
-        let mut open = vec![(order, root)];
+    /// Leaves nothing but what is still.
+    fn cut(&mut self) {
+        self.nodes.truncate(self.still.nodes);
+        self.leaves.truncate(self.still.leaves);
+        self.ids.truncate(self.still.leaves);
+        if let Some(root) = self.nodes.first_mut() {
+            *root = self.still.root;
+        }
+        self.bounds = self.still.bounds;
+    }
+
+    fn add_still(&mut self, soup: Soup, still: usize) {
+        let scales = Scale::all(soup, 0..still, STILL_SCALES);
+        if scales.is_empty() {
+            return;
+        }
+        self.hang_scales(soup, &scales, 0);
+        self.still = Still {
+            triangles: still,
+            nodes: self.nodes.len(),
+            leaves: self.leaves.len(),
+            root: self.nodes[0],
+            bounds: self.bounds,
+        };
+    }
+
+    /// Hangs a tree for each scale under the root, behind what hangs in the first lanes.
+    fn hang_scales(&mut self, soup: Soup, scales: &[Scale], taken: usize) {
+        if self.nodes.is_empty() {
+            self.push_node();
+        }
+        for (scale, lane) in scales.iter().zip(taken..) {
+            let (bounds, top) = self.append(soup, scale);
+            self.bounds = self.bounds.union(bounds);
+            self.nodes[0].hang(lane, bounds, top);
+        }
+    }
+
+    /// Appends a tree; its box and its top.
+    fn append(&mut self, soup: Soup, scale: &Scale) -> (Bounds, Child) {
+        let (nodes, leaves) = (self.nodes.len(), self.leaves.len());
+        let clusters = clusters(soup, scale);
+        let binary = binary_tree(&clusters);
+        let bounds = bounds_of(binary.nodes[0].aabb());
+        let top = Collapse::new(soup, &clusters, &binary).append_to(self);
+        // One is left for the root.
+        if self.depth_from(nodes) < MAX_DEPTH {
+            return (bounds, top);
+        }
+        self.nodes.truncate(nodes);
+        self.leaves.truncate(leaves);
+        self.ids.truncate(leaves);
+        (bounds, self.append_balanced(soup, &scale.ids))
+    }
+
+    /// Appends a tree that divides the given order by eight until leaves are small enough: its depth is log8 of the
+    /// number of triangles whatever their geometry.
+    fn append_balanced(&mut self, soup: Soup, order: &[TriangleId]) -> Child {
+        let top = self.push_node();
+        let mut open = vec![(order, top)];
         while let Some((order, node)) = open.pop() {
             for (lane, part) in order.chunks(order.len().div_ceil(Node::WIDTH)).enumerate() {
                 let child = match soup.leaf(part) {
@@ -81,12 +159,7 @@ impl Accel {
                 self.nodes[node].hang(lane, soup.around(part), child);
             }
         }
-    }
-
-    fn clear(&mut self) {
-        self.nodes.clear();
-        self.leaves.clear();
-        self.ids.clear();
+        Child::node(top)
     }
 
     pub(super) fn push_node(&mut self) -> usize {
@@ -102,26 +175,55 @@ impl Accel {
 
     /// Number of nodes on the longest way down.
     pub(super) fn depth(&self) -> usize {
-        let mut depths = vec![1; self.nodes.len()];
-        for index in 0..self.nodes.len() {
-            for node in self.nodes[index].children.iter().filter_map(|c| c.as_node()) {
-                depths[node] = depths[index] + 1;
+        self.depth_from(0)
+    }
+
+    /// Number of nodes on the longest way down among those from an index on.
+    fn depth_from(&self, first: usize) -> usize {
+        let nodes = &self.nodes[first..];
+        let mut depths = vec![1; nodes.len()];
+        for (index, node) in nodes.iter().enumerate() {
+            for child in node.children.iter().filter_map(|c| c.as_node()) {
+                depths[child - first] = depths[index] + 1;
             }
         }
         depths.into_iter().max().unwrap_or(0)
     }
 }
 
+impl Still {
+    /// Everything moves.
+    pub const NOTHING: Self =
+        Self { triangles: 0, nodes: 0, leaves: 0, root: Node::EMPTY, bounds: Bounds::EMPTY };
+
+    /// Number of the root's lanes that are taken: the first.
+    pub fn lanes(&self) -> usize {
+        self.root.children.iter().filter(|&&child| child != Child::NOTHING).count()
+    }
+}
+
+impl Default for Still {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
 impl Soup<'_> {
-    fn corners(&self, id: TriangleId) -> [Vec3; 3] {
-        self.triangles[id as usize].map(|i| self.positions[i as usize])
+    fn bounds(&self, id: TriangleId) -> Bounds {
+        triangle_bounds(&self.triangles[id as usize].map(|i| self.positions[i as usize]))
+    }
+
+    pub fn aabb(&self, id: TriangleId) -> Aabb {
+        let Bounds { min, max } = self.bounds(id);
+        Aabb::new(min.into(), max.into())
     }
 
     fn around(&self, ids: &[TriangleId]) -> Bounds {
-        ids.iter().fold(Bounds::EMPTY, |all, &id| all.union(triangle_bounds(&self.corners(id))))
+        ids.iter().fold(Bounds::EMPTY, |all, &id| all.union(self.bounds(id)))
     }
 
-    fn leaf(&self, ids: &[TriangleId]) -> Option<(Leaf, LeafIds)> {
+    /// A leaf, if its triangles fit.
+    pub fn leaf(&self, ids: &[TriangleId]) -> Option<(Leaf, LeafIds)> {
         let leaf = Leaf::over(ids, self.positions, self.triangles)?;
         let mut all = [Leaf::NO_TRIANGLE; Leaf::MOST];
         all[..ids.len()].copy_from_slice(ids);
@@ -129,39 +231,15 @@ impl Soup<'_> {
     }
 }
 
-/// Triangles of like size, in rising order of size: those of a scene that reaches from ripples to the horizon do not
-/// belong into one tree, whose cost measure would see the ripples as a point.
-fn by_scale(soup: Soup) -> Vec<Vec<TriangleId>> {
-    let extent = |id: TriangleId| triangle_bounds(&soup.corners(id)).size().max_element();
-    let mut extents: Vec<f32> = (0..soup.triangles.len() as u32).map(extent).collect();
-    let middle = extents.len() / 2;
-    let median = *extents.select_nth_unstable_by(middle, f32::total_cmp).1;
-    let mut scales: Vec<Vec<TriangleId>> = Vec::new();
-    for id in 0..soup.triangles.len() as u32 {
-        let mut scale = 0;
-        let mut limit = median * SCALE_STEP;
-        while extent(id) > limit && limit > 0.0 && scale + 1 < MOST_SCALES {
-            limit *= SCALE_STEP;
-            scale += 1;
-        }
-        scales.resize_with(scales.len().max(scale + 1), Vec::new);
-        scales[scale].push(id);
-    }
-    scales.retain(|ids| !ids.is_empty());
-    scales
+/// A binary tree whose leaves are single clusters, their indices being the first.
+fn binary_tree(clusters: &[Cluster]) -> Bvh2 {
+    let boxes: Vec<Aabb> = clusters.iter().map(Cluster::aabb).collect();
+    let order = (0..boxes.len() as u32).collect();
+    let mut binary = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, order, SortPrecision::U64, 1);
+    ReinsertionOptimizer::default().run(&mut binary, REINSERTION_RATIO, None);
+    binary
 }
 
-fn bvh2_of(soup: Soup, ids: &[TriangleId]) -> Bvh2 {
-    let boxes: Vec<Aabb> = ids
-        .iter()
-        .map(|&id| {
-            let b = triangle_bounds(&soup.corners(id));
-            Aabb::new(b.min.into(), b.max.into())
-        })
-        .collect();
-    let order = (0..boxes.len() as u32).collect();
-    let builder = PlocBuilder::with_capacity(boxes.len());
-    let mut bvh = { builder }.build(PlocSearchDistance::Medium, &boxes, order, SortPrecision::U64, 1);
-    ReinsertionOptimizer::default().run(&mut bvh, REINSERTION_RATIO, None);
-    bvh
+pub(super) fn bounds_of(aabb: &Aabb) -> Bounds {
+    Bounds { min: aabb.min.into(), max: aabb.max.into() }
 }

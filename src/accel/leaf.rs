@@ -4,10 +4,11 @@
 //! eight vertices once and says for each corner which it is. Vertices are sheared into the space of the ray before
 //! they are handed to the triangles, so that both memory and arithmetic are spent once a vertex.
 
-use glam::{Vec3, Vec3A};
+use glam::{Vec3, Vec3A, Vec4};
 
 use super::TriangleId;
 use super::machine::{Eight, Lanes};
+use crate::geometry::Bounds;
 use crate::geometry::triangle::{EdgeHit, GREATEST_NUMERATOR, LEAST_NUMERATOR, RayCast};
 
 /// Up to eight triangles over up to eight vertices: two cache lines.
@@ -53,19 +54,46 @@ impl Leaf {
             shared.add(triangles[id as usize])?;
         }
         let mut leaf = Self { vertices: [Eight([0.0; 8]); 3], corners: shared.corners, count: shared.count };
-        for (i, &index) in shared.vertices.iter().enumerate() {
+        for (i, &index) in shared.vertices[..shared.used].iter().enumerate() {
             leaf.set_vertex(i, positions[index as usize]);
         }
+        leaf.fill_unused(shared.used);
         Some(leaf)
     }
 
     /// Moves the vertices; `triangles` has the corners in the order in which the leaf was made.
     pub fn refit(&mut self, ids: &LeafIds, positions: &[Vec3], triangles: &[[u32; 3]]) {
+        // Vertices are numbered as they appear.
+        let mut used = 0;
         for lane in 0..self.len() {
             let corners = triangles[ids[lane] as usize];
             for (corner, vertex) in corners.into_iter().enumerate() {
-                self.set_vertex(usize::from(self.corners[corner][lane]), positions[vertex as usize]);
+                if usize::from(self.corners[corner][lane]) == used {
+                    self.set_vertex(used, positions[vertex as usize]);
+                    used += 1;
+                }
             }
+        }
+        self.fill_unused(used);
+    }
+
+    /// Repeats the last vertex, so that all lie within the bounds.
+    fn fill_unused(&mut self, used: usize) {
+        for of_axis in &mut self.vertices {
+            let last = of_axis.0[used.clamp(1, Self::MOST) - 1];
+            of_axis.0[used..].fill(last);
+        }
+    }
+
+    /// The box around the triangles.
+    pub fn bounds(&self) -> Bounds {
+        let halves = self.vertices.each_ref().map(|of_axis| {
+            let [a, b, c, d, e, f, g, h] = of_axis.0;
+            [Vec4::new(a, b, c, d), Vec4::new(e, f, g, h)]
+        });
+        Bounds {
+            min: Vec3::from_array(halves.map(|[a, b]| a.min(b).min_element())),
+            max: Vec3::from_array(halves.map(|[a, b]| a.max(b).max_element())),
         }
     }
 
@@ -168,7 +196,8 @@ impl<L: Lanes> LeafRay<L> {
 /// The vertices of some triangles, each once.
 #[derive(Default)]
 struct SharedVertices {
-    vertices: Vec<u32>,
+    vertices: [u32; Leaf::MOST],
+    used: usize,
     corners: [[u8; 8]; 3],
     count: u8,
 }
@@ -180,12 +209,11 @@ impl SharedVertices {
             return None;
         }
         for (corner, index) in triangle.into_iter().enumerate() {
-            let place = self.vertices.iter().position(|&v| v == index).unwrap_or_else(|| {
-                self.vertices.push(index);
-                self.vertices.len() - 1
-            });
-            if place >= Leaf::MOST {
-                return None;
+            let known = self.vertices[..self.used].iter().position(|&v| v == index);
+            let place = known.unwrap_or(self.used);
+            if known.is_none() {
+                *self.vertices.get_mut(place)? = index;
+                self.used += 1;
             }
             self.corners[corner][lane..].fill(place as u8);
         }

@@ -7,6 +7,7 @@
 //! refitted, or built another way, it is the same to the last bit.
 
 mod build;
+mod clusters;
 mod collapse;
 mod connectivity;
 mod cost;
@@ -14,6 +15,7 @@ mod leaf;
 mod machine;
 mod node;
 mod refit;
+mod scales;
 mod traverse;
 mod update;
 mod validate;
@@ -25,6 +27,7 @@ pub use update::{Hierarchy, REBUILD_ABOVE, Update};
 use glam::Vec3;
 
 use crate::geometry::Bounds;
+use build::Still;
 use leaf::{Leaf, LeafIds};
 use node::{Child, Node};
 
@@ -47,7 +50,7 @@ pub struct Hit {
 /// A bounding volume hierarchy of eight children a node and up to eight triangles a leaf.
 #[derive(Clone, Debug, Default)]
 pub struct Accel {
-    /// Children stand after their parents; the root is the first.
+    /// Children stand after their parents; the root is the first, and what is still comes before what moves.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     /// Which triangles each leaf holds.
@@ -56,6 +59,8 @@ pub struct Accel {
     triangles: usize,
     /// The cost of the tree as it was built, once it is known.
     built_cost: Option<f32>,
+    /// What stays when the rest is built anew.
+    still: Still,
 }
 
 /// Deepest tree that is ever traversed; the builder falls back to a balanced tree beyond it.
