@@ -5,6 +5,12 @@
 //! [`Accel::closest`] and [`Accel::occluded`] answer rays. Hits are decided by the triangle alone
 //! ([`crate::geometry::triangle`]) and ties by the lower index, so the answer does not depend on the tree: built,
 //! refitted, or built another way, it is the same to the last bit.
+//!
+//! The way of a ray: `machine` has the wide registers and all `unsafe` code, `node` the boxes, `leaf` the triangles,
+//! `traverse` the walk. The way of a mesh: `scales` parts it by size, `clusters` gathers triangles into leaves,
+//! `build` has the binary tree over them made, `collapse` makes it wide; `connectivity`, `update`, `refit` and `cost`
+//! lead from one frame to the next.
+#![doc = include_str!("measured.md")]
 
 mod build;
 mod clusters;

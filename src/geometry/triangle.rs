@@ -88,7 +88,7 @@ const UNIT: f32 = f32::EPSILON * 0.5;
 const PADDING: f32 = 8.0 * UNIT;
 /// 1 + 2 gamma(3): the slab distances carry three roundings each `[IZE13 section 3]`.
 const FAR_WIDENING: f32 = 1.0 + 2.0 * (3.0 * UNIT / (1.0 - 3.0 * UNIT));
-/// How much more, in units of [`PADDING`], a box around others is padded than a triangle's own.
+/// How much more, in units of `PADDING`, a box around others is padded than a triangle's own.
 ///
 /// The distances to its planes may be computed as `p inverse - origin inverse`, fused or not, and are not widened:
 /// against the triangle's own they may be off by 5 units of |p| (one for each of two roundings, three for the
