@@ -13,6 +13,7 @@
 #![doc = include_str!("measured.md")]
 
 mod build;
+mod clearance;
 mod clusters;
 mod collapse;
 mod connectivity;

@@ -68,6 +68,19 @@ impl Node {
     }
 }
 
+impl Node {
+    /// Squares of the distances from a point to the boxes.
+    #[inline(always)]
+    pub fn squared_distances<L: Lanes>(&self, point: &[L; 3]) -> L {
+        let along = |a: usize| {
+            let [min, max] = &self.planes[a];
+            let outside = L::load(min).sub(point[a]).max(point[a].sub(L::load(max))).max(L::splat(0.0));
+            outside.mul(outside)
+        };
+        along(0).add(along(1)).add(along(2))
+    }
+}
+
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
     pub fn new(slabs: &Slabs) -> Self {

@@ -27,7 +27,7 @@ impl Ignored {
 }
 
 /// A node leaves at most seven children behind while the eighth is visited.
-const STACK_SIZE: usize = (Node::WIDTH - 1) * MAX_DEPTH + 1;
+pub(super) const STACK_SIZE: usize = (Node::WIDTH - 1) * MAX_DEPTH + 1;
 
 /// A child that still has to be visited: the bits of the distance at which it is entered, which order like the
 /// distances since none is negative, above those of the child.
@@ -39,7 +39,7 @@ fn entry(near: f32, child: Child) -> Entry {
 
 /// The last pushed child that is entered before or at `t_max`.
 #[inline(always)]
-fn pop(stack: &mut Stack<STACK_SIZE>, t_max: f32) -> Option<Child> {
+pub(super) fn pop(stack: &mut Stack<STACK_SIZE>, t_max: f32) -> Option<Child> {
     while let Some(entry) = stack.pop() {
         if f32::from_bits((entry >> 32) as u32) <= t_max {
             return Some(Child(entry as u32));
@@ -50,7 +50,7 @@ fn pop(stack: &mut Stack<STACK_SIZE>, t_max: f32) -> Option<Child> {
 
 /// Returns the nearest of the entered children and leaves the others on the stack, the farthest lowest.
 #[inline(always)]
-fn nearest_first<L: Lanes>(
+pub(super) fn nearest_first<L: Lanes>(
     stack: &mut Stack<STACK_SIZE>,
     near: L,
     mut entered: u32,

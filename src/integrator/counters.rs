@@ -9,6 +9,8 @@ use serde::Serialize;
 pub struct Counters {
     /// Rays traced for paths.
     pub rays: u64,
+    /// Flights between two collisions that needed no ray, since no surface is near.
+    pub untraced: u64,
     /// Rays traced towards lights.
     pub shadow_rays: u64,
     /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
@@ -41,6 +43,7 @@ impl Counters {
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
+        self.untraced += other.untraced;
         self.shadow_rays += other.shadow_rays;
         self.label_mismatches += other.label_mismatches;
         self.non_finite += other.non_finite;

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::{EyeSample, FirstHit, Scratch};
-use crate::accel::{Hit, Ignored};
+use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::geometry::triangle::scaled_normal;
 use crate::optics::medium::{FreeFlight, MediumId};
@@ -58,6 +58,7 @@ pub struct Branch {
     pub(super) steps: u32,
     pub(super) splits_left: u32,
     pub(super) arrival: Arrival,
+    pub(super) clearing: Clearing,
     pub(super) stream: SampleStream,
 }
 
@@ -76,6 +77,45 @@ pub(super) struct LitVertex {
     pub(super) position: Vec3,
     /// Density with which the path's direction was drawn there.
     pub(super) pdf_w: f32,
+}
+
+/// A ball without surfaces around a path in a medium that scatters: while the path stays in it nothing has to be traced.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clearing {
+    centre: Vec3,
+    /// Negative without a ball.
+    radius: f32,
+    /// Collisions since the last surface or ball, and how many there must be before the next is looked for.
+    collisions: u32,
+    patience: u32,
+}
+
+impl Clearing {
+    pub(super) const NONE: Self =
+        Self { centre: Vec3::ZERO, radius: -1.0, collisions: 0, patience: Self::FIRST_PATIENCE };
+    /// Paths that collide a few times only are not worth the search.
+    const FIRST_PATIENCE: u32 = 4;
+    /// A ball of fewer mean free paths is soon left: the next is looked for later.
+    const WORTH_A_SEARCH: f32 = 4.0;
+
+    #[inline]
+    fn holds(&self, point: Vec3) -> bool {
+        self.radius > 0.0 && point.distance_squared(self.centre) < self.radius * self.radius
+    }
+
+    /// The path has collided at a point outside of the ball.
+    #[inline]
+    fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel) {
+        self.radius = -1.0;
+        self.collisions += 1;
+        if self.collisions >= self.patience {
+            self.centre = point;
+            self.radius = accel.clearance(point) - rounding(point, 0.0);
+            self.collisions = 0;
+            let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
+            self.patience = if is_large { Self::FIRST_PATIENCE } else { 2 * self.patience };
+        }
+    }
 }
 
 /// Whether a branch goes on.
@@ -119,6 +159,7 @@ impl PathTracer {
             steps: 0,
             splits_left: self.split,
             arrival: Arrival { specular_from_eye: true, lit: None },
+            clearing: Clearing::NONE,
             stream,
         });
         let max_depth = if self.max_depth == 0 { u32::MAX } else { self.max_depth };
@@ -151,11 +192,20 @@ impl Sample<'_> {
         let u = branch.stream.next4();
         let medium = self.scratch.media[branch.medium.0 as usize];
         let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u[0]));
+        if SCATTERING
+            && let Some(flight) = &flight
+            && branch.clearing.holds(branch.origin + branch.direction * flight.distance)
+        {
+            self.scratch.counters.untraced += 1;
+            branch.throughput *= medium.scatter_weight(flight);
+            return self.scatter::<DIRECT>(branch, flight, u);
+        }
         let t_max = flight.map_or(f32::INFINITY, |f| f.distance + rounding(branch.origin, f.distance));
         let ray = Ray { origin: branch.origin, direction: branch.direction, t_max };
         self.scratch.counters.rays += 1;
         match (self.nearest(branch, &ray), flight) {
             (Some(hit), flight) => {
+                branch.clearing = Clearing::NONE;
                 branch.throughput *= match flight {
                     Some(flight) => medium.pass_weight(&flight, hit.t),
                     None => medium.transmittance(hit.t),
@@ -164,6 +214,8 @@ impl Sample<'_> {
                 self.meet::<DIRECT>(branch, &hit, u)
             }
             (None, Some(flight)) if flight.distance.is_finite() => {
+                let point = branch.origin + branch.direction * flight.distance;
+                branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
                 branch.throughput *= medium.scatter_weight(&flight);
                 self.scatter::<DIRECT>(branch, &flight, u)
             }
