@@ -142,9 +142,8 @@ impl RayCast {
         let turned = v.map(|p| self.turn.apply(p.into()));
         let sheared = turned.map(|p| self.sheared(p));
         let edges = edge_functions(&sheared);
-        let is_mixed = edges.min_element() < 0.0 && edges.max_element() > 0.0;
         let hit = EdgeHit { edges, t_numerator: self.t_numerator(edges, &sheared) };
-        if is_mixed { None } else { self.settle(hit, turned, t_max) }
+        if differ_in_sign(edges) { None } else { self.settle(hit, turned, t_max) }
     }
 
     /// Meets a triangle at `t_max` or before, given the turned vertices, and edge functions that do not differ in sign.
@@ -157,7 +156,7 @@ impl RayCast {
         let (edges, t) = if is_in_range && !hit.edges.cmpeq(Vec3A::ZERO).any() {
             (hit.edges, hit.t_numerator / hit.determinant())
         } else {
-            self.exact(&turned)
+            self.exact(&turned)?
         };
         let determinant = edges.x + edges.y + edges.z;
         let [a, b, c] = turned;
@@ -172,14 +171,18 @@ impl RayCast {
         })
     }
 
-    /// Edge functions and t in double precision, whose range no product of three coordinates leaves.
+    /// Edge functions and t in double precision, whose range no product of three coordinates leaves; nothing where the
+    /// edge functions differ in sign after all, which zeros among them had hidden.
     #[cold]
-    fn exact(&self, turned: &[Vec3A; 3]) -> (Vec3A, f32) {
+    fn exact(&self, turned: &[Vec3A; 3]) -> Option<(Vec3A, f32)> {
         let sheared = turned.map(|p| self.sheared(p));
         let edges = exact_edge_functions(&sheared);
+        if differ_in_sign(edges) {
+            return None;
+        }
         let depths = DVec3::from(sheared.map(|p| f64::from(p.z)));
         let depth = edges.as_dvec3().dot(depths) / edges.as_dvec3().element_sum();
-        (edges, depth as f32 * self.shear.z)
+        Some((edges, depth as f32 * self.shear.z))
     }
 
     #[inline]
@@ -239,6 +242,10 @@ impl Slabs {
 #[inline]
 fn edge_functions([a, b, c]: &[Vec3A; 3]) -> Vec3A {
     Vec3A::new(c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x)
+}
+
+fn differ_in_sign(edges: Vec3A) -> bool {
+    edges.min_element() < 0.0 && edges.max_element() > 0.0
 }
 
 /// U, V and W in double precision, rounded away from zero: never zero unless exactly zero.
@@ -370,6 +377,22 @@ mod tests {
                         prop_assert!(outer_near <= near && outer_far >= far);
                     }
                 }
+            }
+        }
+
+        /// In their plane edge functions are rounding errors, many of them zero, and only exact ones tell.
+        #[test]
+        fn what_is_met_in_its_plane_is_met_within_the_triangle(
+            p in prop::array::uniform9(-8_i32..=8), at in prop::array::uniform4(-3.0_f32..3.0), far in -2_i32..3
+        ) {
+            let scale = 10.0_f32.powi(far) / 8.0;
+            let corner = |i: usize| Vec3::new(p[i] as f32, p[i + 1] as f32, p[i + 2] as f32) * scale;
+            let v = [corner(0), corner(3), corner(6)];
+            let within = |s: f32, t: f32| v[0] + (v[1] - v[0]) * s + (v[2] - v[0]) * t;
+            let (origin, target) = (within(at[0], at[1]), within(at[2], at[3]));
+            prop_assume!((target - origin).length() > 1e-2 * scale);
+            if let Some(hit) = cast(origin, target - origin).triangle(&v, f32::INFINITY) {
+                prop_assert!(hit.barycentric.min_element() >= 0.0 && hit.barycentric.max_element() < 1.0001, "{hit:?}");
             }
         }
 
