@@ -6,7 +6,8 @@
 //! either side. Simulators number a new vertex like one that was deleted, so that equal numbers need not be the same
 //! vertex; a hierarchy does not mind, since hits do not depend on it.
 //!
-//! Time is linear; it is least where triangles keep their places.
+//! Time is linear; it is least where triangles keep their places. Where it would not be, as among thousands of copies of
+//! one triangle, the triangles count as others.
 
 use super::TriangleId;
 use crate::mesh::canonical::least_first;
@@ -33,7 +34,7 @@ impl Connectivity {
         }
         let is_moved = |&i: &usize| least_first(old[i]) != least_first(new[i]);
         let moved: Vec<TriangleId> = (0..old.len()).filter(is_moved).map(|i| i as TriangleId).collect();
-        let mut places = Places::of(old, &moved);
+        let Some(mut places) = Places::of(old, &moved) else { return Self::New };
         let mut new_ids: Vec<TriangleId> = (0..old.len() as TriangleId).collect();
         for to in moved {
             let Some(from) = places.take(least_first(new[to as usize])) else { return Self::New };
@@ -48,26 +49,33 @@ struct Places<'a> {
     triangles: &'a [[u32; 3]],
     /// Twice as many slots as triangles, at least, and a power of two of them.
     slots: Vec<TriangleId>,
+    /// How many more slots may be looked at.
+    looks: usize,
 }
 
 impl<'a> Places<'a> {
     const FREE: TriangleId = TriangleId::MAX;
     const TAKEN: TriangleId = TriangleId::MAX - 1;
+    /// Slots that may be looked at for each triangle, on average: half full and well mixed they are about two to put one
+    /// in and three to take one out.
+    const MOST_LOOKS: usize = 64;
 
-    fn of(triangles: &'a [[u32; 3]], ids: &[TriangleId]) -> Self {
+    /// Nothing when it takes too long.
+    fn of(triangles: &'a [[u32; 3]], ids: &[TriangleId]) -> Option<Self> {
         let slots = vec![Self::FREE; (2 * ids.len()).next_power_of_two()];
-        let mut places = Self { triangles, slots };
+        let looks = Self::MOST_LOOKS * ids.len();
+        let mut places = Self { triangles, slots, looks };
         for &id in ids {
             let mut slot = places.first_slot(least_first(triangles[id as usize]));
             while places.slots[slot] != Self::FREE {
-                slot = places.after(slot);
+                slot = places.after(slot)?;
             }
             places.slots[slot] = id;
         }
-        places
+        Some(places)
     }
 
-    /// The index of a triangle that was not taken before.
+    /// The index of a triangle that was not taken before; nothing either when it takes too long.
     fn take(&mut self, triangle: [u32; 3]) -> Option<TriangleId> {
         let mut slot = self.first_slot(triangle);
         loop {
@@ -77,7 +85,7 @@ impl<'a> Places<'a> {
                     self.slots[slot] = Self::TAKEN;
                     return Some(id);
                 }
-                _ => slot = self.after(slot),
+                _ => slot = self.after(slot)?,
             }
         }
     }
@@ -88,8 +96,9 @@ impl<'a> Places<'a> {
         triangle.into_iter().fold(FACTOR, mixed) as usize & (self.slots.len() - 1)
     }
 
-    fn after(&self, slot: usize) -> usize {
-        (slot + 1) & (self.slots.len() - 1)
+    fn after(&mut self, slot: usize) -> Option<usize> {
+        self.looks = self.looks.checked_sub(1)?;
+        Some((slot + 1) & (self.slots.len() - 1))
     }
 }
 
@@ -151,6 +160,27 @@ mod tests {
         assert_eq!(Connectivity::between(&old, &[[1, 2, 0], [2, 3, 0]]), Connectivity::Reordered(vec![0, 1]));
         assert_eq!(Connectivity::between(&old, &[[0, 1, 2], [0, 3, 2]]), Connectivity::New);
         assert_eq!(Connectivity::between(&old, &[[3, 0, 2], [0, 1, 2]]), Connectivity::Reordered(vec![1, 0]));
+    }
+
+    #[test]
+    fn copies_without_number_take_no_time() {
+        // Were they compared one by one, these would take hours.
+        let (a, b) = (vec![[0, 1, 2]; 1 << 20], vec![[3, 4, 5]; 1 << 20]);
+        let (old, new) = ([&*a, &*b].concat(), [&*b, &*a].concat());
+        assert_eq!(Connectivity::between(&old, &new), Connectivity::New);
+    }
+
+    #[test]
+    fn a_grid_in_any_order_is_recognised() {
+        let n = 300;
+        let corners = (0..n * n).map(|i| i / n * (n + 1) + i % n);
+        let old: Vec<[u32; 3]> =
+            corners.flat_map(|i| [[i, i + 1, i + n + 2], [i, i + n + 2, i + n + 1]]).collect();
+        let count = old.len();
+        for step in [1, 7, 601, count - 1] {
+            let new: Vec<[u32; 3]> = (0..count).map(|i| old[(i * step + 5) % count]).collect();
+            assert!(matches!(Connectivity::between(&old, &new), Connectivity::Reordered(_)), "step {step}");
+        }
     }
 
     #[test]
