@@ -7,13 +7,12 @@
 //! Russian roulette acts on the throughput without the factors (n_a / n_b)^2 of the boundaries crossed, relative to the
 //! branch's share at the splits, so that a path which loses nothing is never ended by it.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::direct::Receiver;
 use super::{EyeSample, FirstHit, Scratch};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
-use crate::geometry::triangle::scaled_normal;
 use crate::optics::medium::{FreeFlight, MediumId};
 use crate::optics::phase::one_minus_cos;
 use crate::sampling::SampleStream;
@@ -262,14 +261,15 @@ impl Sample<'_> {
     /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for rounding.
     fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
         let slack = 4.0 * rounding(ray.origin, t);
-        let v = self.frame.geometry.vertices(hit.triangle);
-        let scaled = scaled_normal(&v);
+        // In double precision: the squares of areas leave the range of single precision among lengths that are valid.
+        let v = self.frame.geometry.vertices(hit.triangle).map(|p| p.as_dvec3());
+        let scaled = (v[1] - v[0]).cross(v[2] - v[0]);
         let doubled_area = scaled.length();
         // Height over the plane, and distances from the edges, both times twice the area.
-        let height = t * scaled.dot(ray.direction).abs();
-        let edges = Vec3::new((v[2] - v[1]).length(), (v[0] - v[2]).length(), (v[1] - v[0]).length());
-        let from_edges = hit.barycentric * doubled_area * doubled_area / edges;
-        height.min(from_edges.min_element()) <= slack * doubled_area
+        let height = f64::from(t) * scaled.dot(ray.direction.as_dvec3()).abs();
+        let edges = DVec3::new((v[2] - v[1]).length(), (v[0] - v[2]).length(), (v[1] - v[0]).length());
+        let from_edges = hit.barycentric.as_dvec3() * doubled_area * doubled_area / edges;
+        height.min(from_edges.min_element()) <= f64::from(slack) * doubled_area
     }
 
     /// A boundary of the path's medium that is as far away as `found`, which is none.
