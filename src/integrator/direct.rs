@@ -108,10 +108,11 @@ impl Sample<'_> {
         let mut travelled = 0.0;
         for hit in &self.scratch.crossings {
             let Surface::Interface(pair) = self.frame.surface(hit.triangle) else { continue };
-            let (a, b) = pair.crossed(hit.from_front);
+            let beyond = pair.crossed(hit.from_front).1;
             left *= self.scratch.media[medium.0 as usize].transmittance(hit.t - travelled);
-            left *= self.index_factor(a, b);
-            (medium, travelled) = (b, hit.t);
+            // From the medium that light is in: at an edge both triangles are met, and the second changes nothing.
+            left *= self.index_factor(medium, beyond);
+            (medium, travelled) = (beyond, hit.t);
         }
         if self.ends_in_the_dark(ray, medium) {
             return Lanes::ZERO;
