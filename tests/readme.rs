@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use floe::accel::REBUILD_ABOVE;
 use floe::scene::description::SceneDescription;
 
 const README: &str = include_str!("../README.md");
@@ -27,4 +28,10 @@ fn every_file_that_the_readme_names_is_there() {
     for path in pictures.chain(["sequences/iceberg", "LICENSE-MIT", "LICENSE-APACHE", "src/references.md"]) {
         assert!(Path::new(path).exists(), "{path}");
     }
+}
+
+#[test]
+fn the_cost_above_which_hierarchies_are_rebuilt_is_that_of_the_code() {
+    let claim = format!("`cost_ratio` {REBUILD_ABOVE};");
+    assert!(README.contains(&claim), "{claim}");
 }
