@@ -62,6 +62,8 @@ impl Scratch {
         self.media.clear();
         self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
         self.branches.clear();
+        // Another scene may have had some.
+        self.crossings.clear();
     }
 }
 
