@@ -8,9 +8,9 @@
 use obvhs::aabb::Aabb;
 
 use super::TriangleId;
-use super::build::Soup;
 use super::leaf::Leaf;
 use super::scales::Scale;
+use super::soup::Soup;
 
 /// How many clusters on either side are looked at; 4 and 8 took longer and made no faster tree.
 const REACH: usize = 2;

@@ -17,9 +17,9 @@
 use obvhs::bvh2::Bvh2;
 
 use super::Accel;
-use super::build::{Soup, bounds_of};
 use super::clusters::Cluster;
 use super::node::{Child, Node};
+use super::soup::{Soup, bounds_of};
 
 /// Places that a node can take in the one above: one is left to its sibling.
 const PLACES: usize = Node::WIDTH - 1;

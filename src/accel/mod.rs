@@ -23,6 +23,7 @@ mod machine;
 mod node;
 mod refit;
 mod scales;
+mod soup;
 mod traverse;
 mod update;
 mod validate;

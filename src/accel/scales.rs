@@ -6,7 +6,7 @@ use std::ops::Range;
 use obvhs::aabb::Aabb;
 
 use super::TriangleId;
-use super::build::Soup;
+use super::soup::Soup;
 
 /// Triangles more than this many times larger than the median have a tree of their own, and so on upwards.
 const SCALE_STEP: f32 = 16.0;
