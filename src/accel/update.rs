@@ -82,7 +82,9 @@ impl Accel {
             Connectivity::Reordered(new_ids) => self.renumber(new_ids, positions, triangles),
             _ => self.refit(positions, triangles),
         }
-        let cost_ratio = if built > 0.0 { self.cost() / built } else { 1.0 };
+        let cost = self.cost();
+        // What was built over a single line or point cost nothing and is worth nothing once there is more.
+        let cost_ratio = if cost > 0.0 { cost / built } else { 1.0 };
         let hierarchy = if cost_ratio > REBUILD_ABOVE {
             self.rebuild(positions, triangles, still);
             Hierarchy::Rebuilt
@@ -161,6 +163,17 @@ mod tests {
         // From here the cost is relative to the new tree.
         let update = accel.update(&shuffled, &triangles, 0, &Connectivity::Same);
         assert_eq!((update.hierarchy, update.cost_ratio), (Hierarchy::Refitted, Some(1.0)));
+    }
+
+    #[test]
+    fn what_was_a_line_is_built_again_when_it_is_a_sheet() {
+        let (sheet, triangles) = sheet(20, |_, _| 0.0);
+        let line: Vec<Vec3> = sheet.iter().map(|p| Vec3::X * p.y).collect();
+        let mut accel = Accel::build(&line, &triangles);
+        let mut hierarchy =
+            |positions: &[Vec3]| accel.update(positions, &triangles, 0, &Connectivity::Same).hierarchy;
+        assert_eq!(hierarchy(&line), Hierarchy::Refitted);
+        assert_eq!((hierarchy(&sheet), hierarchy(&sheet)), (Hierarchy::Rebuilt, Hierarchy::Refitted));
     }
 
     #[test]
