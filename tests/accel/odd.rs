@@ -68,6 +68,9 @@ fn nothing_and_one_triangle() {
     let one = mesh.built();
     assert!(one.occluded(&down, Ignored::NOTHING) && !one.occluded(&down, Ignored::one(0)));
     assert!(!one.occluded(&Ray { t_max: 0.5, ..down }, Ignored::NOTHING));
+    // Leaves have room for more triangles, and what is there must not be met instead.
+    assert!(!one.occluded(&down, Ignored([0, 7])) && one.closest(&down, Ignored([0, 7])).is_none());
+    one.each_hit(&down, Ignored([0, 7]), |hit| panic!("{hit:?}"));
     assert_agrees(&one, &mesh, &down);
 }
 
