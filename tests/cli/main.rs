@@ -140,6 +140,7 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "status",
         "trapped",
         "triangles",
+        "untraced",
         "wait_seconds",
         "warnings",
         "write_seconds",
