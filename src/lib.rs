@@ -18,7 +18,7 @@
 //! # Conventions
 //! * Metres, nanometres, 1/m for coefficients, W m^-2 sr^-1 (nm^-1) for radiance. Degrees only in files and on
 //!   the command line.
-//! * `wo` and `wi` point away from the point. A phase function takes `one_minus_cos` of the angle between the
+//! * `wo` and `wi` point away from the point. A phase function takes the [`optics::phase::Deflection`] between the
 //!   directions of *travel*; g > 0 scatters forward.
 //! * `eta_t_over_i` carries its order in its name. Densities carry their measure: `pdf_w` (solid angle), `pdf_a`
 //!   (area), `pdf_d` (distance).

@@ -36,7 +36,10 @@ fn an_empty_file_has_every_default() {
     assert_eq!(scene.media.keys().collect::<Vec<_>>(), ["air"]);
     let air = &scene.media["air"];
     assert_eq!((&air.ior, &air.absorption), (&RefractiveIndex::Constant(1.0), &None));
-    assert_eq!((&air.scattering, air.phase), (&Spectrum::Constant(0.0), PhaseFunction::Isotropic(Isotropic)));
+    assert_eq!(
+        (&air.scattering, &air.phase),
+        (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic))
+    );
     assert_eq!((scene.domain, scene.surfaces.len(), scene.sun), (None, 0, None));
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Constant(0.0)));
     assert_eq!(scene.camera.placement, None);
@@ -174,6 +177,8 @@ const WRONG_KEYS: &[Wrong] = &[
      "surfaces[0] has no `back`: write the medium"),
     ("[[surfaces]]\nmesh = 'a'\nmaterial = { kind = 'conductor', eta = 1 }", 3, 12, "surfaces[0].material has no `k`"),
     ("[media.a]\nphase = { kind = 'henyey-greenstein' }", 2, 9, "[media.a.phase] has no `g`"),
+    ("[media.a]\nphase = { kind = 'two-term-schlick', k1 = 0.1 }", 2, 9, "has no `share`"),
+    ("[media.a]\nphase = { kind = 'fournier-forand', ior = 1.1 }", 2, 9, "has no `mu`"),
     ("[media.a]\nior = { n = [1.3] }", 2, 7, "[media.a.ior] has no `wavelength`"),
     ("[sun]\ndirection = [0, 0, 1]\nirradiance = { blackbody = 5778 }", 3, 14, "[sun.irradiance] has no `illuminance`"),
     ("[sun]\ndirection = [0, 0, 1]\nirradiance = { illuminance = 9 }", 3, 14, "[sun.irradiance] has no `blackbody`"),
@@ -202,7 +207,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[media.a]\nscattering = true", 2, 14, "media.a.scattering: true: write a number, [r, g, b], or {"),
     ("[media.a]\nscattering = [1, 2]", 2, 14, "media.a.scattering: [1, 2]: write a number, [r, g, b]"),
     ("[media.a]\nphase = 'lorenz-mie'", 2, 9, "media.a.phase: 'lorenz-mie': write { kind = \"isotropic\" }"),
-    ("[media.a]\nphase = { kind = 'mie' }", 2, 18, "write one of `isotropic` and `henyey-greenstein`"),
+    ("[media.a]\nphase = { kind = 'mie' }", 2, 18, "write one of `isotropic`, `henyey-greenstein`, `two-term-henyey-greenstein`, `cornette-shanks`"),
     ("[sky]\nradiance = { image = 3 }", 2, 22, "sky.radiance.image: 3: write an EXR or HDR file in quotes"),
     ("[camera]\neye = [1, 2]\ntarget = [0, 0, 0]", 2, 7, "camera.eye: [1, 2]: write three numbers"),
     ("[camera]\neye = [[1, 2, 3], [3, 4, 5]]\ntarget = [0, 0, 0]", 2, 7,
@@ -232,6 +237,20 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[media.a]\nabsorption = [1, -0.5, 0]", 2, 18, "media.a.absorption[1]: -0.5: write a number that is not below"),
     ("[media.a]\nphase = { kind = 'henyey-greenstein', g = 1 }", 2, 43, "media.a.phase.g: 1: write a number between"),
     ("[media.a]\nphase = { kind = 'henyey-greenstein', g = 0.999999999 }", 2, 43, "in single precision"),
+    ("[media.a]\nphase = { kind = 'linear-anisotropic', a = 1.5 }", 2, 44, "write a number from -1 to 1"),
+    ("[media.a]\nphase = { kind = 'cornette-shanks', g = 0.999999 }", 2, 41, "from -0.99999 to 0.99999"),
+    ("[media.a]\nphase = { kind = 'draine', g = 0.5, alpha = -1 }", 2, 45, "write a number from 0 to 1000"),
+    ("[media.a]\nphase = { kind = 'sakas', n = -1 }", 2, 31, "write a number from 0 to 1000"),
+    ("[media.a]\nphase = { kind = 'gaussian', gamma = 1e9 }", 2, 38, "write a number from 0 to 1e8"),
+    ("[media.a]\nphase = { kind = 'two-term-schlick', fit = 'milky' }", 2, 44, "write one of `rayleigh`, `hazy`"),
+    ("[media.a]\nphase = { kind = 'specular-spheres', ior = 1 }", 2, 9, "reflect nothing: change ior"),
+    ("[media.a]\nphase = { kind = 'fournier-forand', ior = 1.5, mu = 3.5 }", 2, 43, "relative to water from 1.01"),
+    ("[media.a]\nphase = { kind = 'fournier-forand', ior = 1.1, mu = 3 }", 2, 53, "sizes, from 3.05 to 4.95"),
+    ("[media.a]\nphase = { kind = 'fournier-forand', backscatter = 0.5 }", 2, 51, "from 0.0001 to 0.2"),
+    ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 9, 9], value = [1, 1, 1] }", 2, 46, "must rise strictly"),
+    ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 181], value = [1, 1] }", 2, 43, "from 0 to 180 degrees"),
+    ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 9], value = [1] }", 2, 55, "1 numbers for 2 angles"),
+    ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 9], value = [0, 0] }", 2, 9, "leave no light to scatter"),
     ("[media.a]\nior = { table = 'water', temperature = 400 }", 2, 40, "write a temperature from -10 to 100"),
     ("[media.a]\nior = { table = 'water', salinity = -1 }", 2, 37, "write a salinity from 0 to 100"),
     ("[media.a]\nior = { wavelength = [400, 500], n = [1.3] }", 2, 38, "1 numbers for 2 wavelengths: write one for"),

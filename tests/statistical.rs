@@ -1,4 +1,4 @@
-//! Samplers against their densities: chi-square tests, normalisation, mean cosines, reciprocity.
+//! Samplers against their densities: chi-square tests, normalisation, mean cosines, reciprocity, limits.
 //!
 //! Seeds are fixed. The significance of the whole file is [`SIGNIFICANCE`], shared evenly among its chi-square tests
 //! (Bonferroni), so that a sound sampler fails with any one seed with a probability of 1e-4.
@@ -11,6 +11,7 @@ mod common;
 mod statistical {
     mod lights;
     mod phase_functions;
+    mod phase_limits;
     mod tests_of_fit;
     mod warps;
 }
@@ -19,4 +20,4 @@ mod statistical {
 const SIGNIFICANCE: f64 = 1e-4;
 
 /// Upper bound on the number of chi-square tests.
-const TESTS: f64 = 40.0;
+const TESTS: f64 = 80.0;

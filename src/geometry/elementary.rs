@@ -24,6 +24,12 @@ pub fn pow(x: f32, y: f32) -> f32 {
     libm::powf(x, y)
 }
 
+/// Cube root.
+#[inline]
+pub fn cbrt(x: f32) -> f32 {
+    libm::cbrtf(x)
+}
+
 /// Sine and cosine of an angle in radians.
 #[inline]
 pub fn sin_cos(x: f32) -> (f32, f32) {

@@ -14,7 +14,7 @@ use super::{EyeSample, FirstHit, Scratch};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::optics::medium::{FreeFlight, MediumId};
-use crate::optics::phase::one_minus_cos;
+use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
 use crate::scene::geometry::SurfaceHit;
@@ -297,15 +297,15 @@ impl Sample<'_> {
                 albedo: Lanes::ONE,
             });
         }
-        let phase = self.frame.medium(branch.medium).phase;
+        let phase = &self.frame.medium(branch.medium).phase;
         let forward = branch.direction;
         let lit = DIRECT && self.frame.looks_for_lights(branch.medium);
         if lit {
             let receiver =
                 Receiver { position: point, normal: None, medium: branch.medium, leaves: u32::MAX };
             let response = |wi: Vec3| {
-                let angle = one_minus_cos(forward, wi);
-                (Lanes::splat(phase.value(angle)), phase.pdf_w(angle))
+                let turned = Deflection::between(forward, wi);
+                (Lanes::splat(phase.value(turned)), phase.pdf_w(turned))
             };
             let direct = self.direct(&receiver, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;

@@ -148,7 +148,7 @@ fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
         n: medium.ior.for_rays(),
         sigma_a: absorption_of(medium).prepare(Role::Coefficient, mode),
         sigma_s: medium.scattering.prepare(Role::Coefficient, mode),
-        phase: medium.phase,
+        phase: medium.phase.clone(),
     }
 }
 

@@ -71,6 +71,31 @@ fn a_medium_that_absorbs_nothing_vanishes_in_white_surroundings() {
     }
 }
 
+/// Where samples are drawn through a table, their weights differ from 1 and still average to it.
+#[test]
+fn every_phase_function_is_white_on_average() {
+    let slab = cuboid(DVec3::new(-1.0, -0.2, -1.0), DVec3::new(1.0, 0.2, 1.0));
+    let folder = SceneFolder::new().mesh("slab.ply", &slab);
+    for phase in [
+        "kind = \"rayleigh\"",
+        "kind = \"murky\"",
+        "kind = \"two-term-henyey-greenstein\", share = 0.9, g1 = 0.9, g2 = -0.9",
+        "kind = \"cornette-shanks\", g = -0.9",
+        "kind = \"diffuse-spheres\"",
+        "kind = \"specular-spheres\", ior = 0.75",
+        "kind = \"gaussian\", gamma = 1e6",
+        "kind = \"fournier-forand\", backscatter = 0.0183",
+        "kind = \"tabulated\", angle = [0, 0.1, 10, 90, 180], value = [1e6, 1e4, 3, 0, 2]",
+    ] {
+        let scene = folder.scene(&format!(
+            "[media.milk]\nior = 1.33\nscattering = 20\nphase = {{ {phase} }}\n\
+             [[surfaces]]\nmesh = \"slab.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"milk\"\n\
+             material = {{ kind = \"dielectric\" }}\n{CAMERA}"
+        ));
+        assert_mean(phase, &scene.render(256, 0), DVec3::ONE, 2e-3);
+    }
+}
+
 /// Lanes that scatter differently are drawn from one of them; the weights of a white furnace still average to 1.
 #[test]
 fn a_coloured_medium_that_absorbs_nothing_is_white_on_average() {

@@ -1,27 +1,88 @@
 //! Phase functions: where scattered light goes.
 //!
-//! Each is normalised over the sphere and depends on the angle between the directions of *travel* before and after,
-//! given as 1 - cos: near 0, where forward peaks live, the cosine itself has no digits left. One file a function;
-//! [`EXAMPLES`] is the list that tests walk.
+//! Each is normalised over the sphere and depends on the [`Deflection`] alone, the angle between the directions of
+//! *travel* before and after. One file a function; [`EXAMPLES`] is the list that tests walk. Most are sampled exactly
+//! by their inverted cumulative distribution. Those that have none in closed form are sampled through a table of their
+//! values, and the samples' weight, value over density, makes good what is lost between its nodes.
 
+mod angle_table;
+mod atmosphere;
+mod cornette_shanks;
+mod deflection;
+mod diffuse_spheres;
+mod draine;
+mod examples;
+mod fournier_forand;
+mod gaussian;
 mod henyey_greenstein;
 mod isotropic;
+mod linear_anisotropic;
+mod rayleigh;
+mod sakas;
+mod schlick;
+mod specular_spheres;
+mod tabulated;
+mod two_term_henyey_greenstein;
+mod two_term_schlick;
 
 use glam::Vec3;
 
+pub use atmosphere::Atmosphere;
+pub use cornette_shanks::CornetteShanks;
+pub use deflection::Deflection;
+pub use diffuse_spheres::DiffuseSpheres;
+pub use draine::Draine;
+pub use examples::{EXAMPLES, Examples};
+pub use fournier_forand::FournierForand;
+pub use gaussian::Gaussian;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
+pub use linear_anisotropic::LinearAnisotropic;
+pub use rayleigh::Rayleigh;
+pub use sakas::Sakas;
+pub use schlick::Schlick;
+pub use specular_spheres::SpecularSpheres;
+pub use tabulated::Tabulated;
+pub use two_term_henyey_greenstein::TwoTermHenyeyGreenstein;
+pub use two_term_schlick::TwoTermSchlick;
 
 use crate::geometry::Frame;
-use crate::sampling::warp;
 
-/// Any phase function.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Any phase function. Copies share their tables.
+#[derive(Clone, Debug, PartialEq)]
 pub enum PhaseFunction {
     /// The same in every direction.
     Isotropic(Isotropic),
+    /// One plus a multiple of the cosine.
+    LinearAnisotropic(LinearAnisotropic),
+    /// Particles much smaller than the wavelength.
+    Rayleigh(Rayleigh),
+    /// Hazy and murky air.
+    Atmosphere(Atmosphere),
     /// One lobe of given mean cosine.
     HenyeyGreenstein(HenyeyGreenstein),
+    /// Two such lobes.
+    TwoTermHenyeyGreenstein(TwoTermHenyeyGreenstein),
+    /// Henyey and Greenstein's lobe with Rayleigh's limit.
+    CornetteShanks(CornetteShanks),
+    /// A rational lobe.
+    Schlick(Schlick),
+    /// Two such lobes.
+    TwoTermSchlick(TwoTermSchlick),
+    /// Large spheres with a diffuse surface.
+    DiffuseSpheres(DiffuseSpheres),
+    /// Large spheres with a mirroring surface.
+    SpecularSpheres(SpecularSpheres),
+    /// One plus a power of the cosine.
+    Sakas(Sakas),
+    /// A Gaussian of the angle.
+    Gaussian(Gaussian),
+    /// Particles of ocean water.
+    FournierForand(FournierForand),
+    /// Between Henyey and Greenstein's and Rayleigh's.
+    Draine(Draine),
+    /// Given values.
+    Tabulated(Tabulated),
 }
 
 /// A sampled direction; `weight` is value / pdf.
@@ -35,54 +96,113 @@ pub struct PhaseSample {
     pub pdf_w: f32,
 }
 
-/// One of each kind, and its extremes.
-pub const EXAMPLES: &[(&str, PhaseFunction)] = &[
-    ("isotropic", PhaseFunction::Isotropic(Isotropic)),
-    ("henyey-greenstein 0", PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.0 })),
-    ("henyey-greenstein 0.5", PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.5 })),
-    ("henyey-greenstein -0.7", PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: -0.7 })),
-    ("henyey-greenstein 0.95", PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.95 })),
-    ("henyey-greenstein 0.9999", PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9999 })),
-];
+/// What each phase function says of itself.
+trait Lobe {
+    /// Density of scattered light per solid angle.
+    fn value(&self, deflection: Deflection) -> f32;
+
+    /// The angle that belongs to a random number in [0, 1).
+    fn sample(&self, u: f32) -> Deflection;
+
+    /// Mean cosine of the angle; positive is forward.
+    fn mean_cosine(&self) -> f32;
+
+    /// Density of [`Lobe::sample`], where it is not the value itself.
+    #[inline]
+    fn pdf_w(&self, deflection: Deflection) -> f32 {
+        self.value(deflection)
+    }
+
+    /// Value over the density `pdf_w`, where that is not one.
+    #[inline]
+    fn weight(&self, _deflection: Deflection, _pdf_w: f32) -> f32 {
+        1.0
+    }
+
+    /// An angle with its density and its weight.
+    #[inline]
+    fn sampled(&self, u: f32) -> (Deflection, f32, f32) {
+        let deflection = self.sample(u);
+        let pdf_w = self.pdf_w(deflection);
+        (deflection, pdf_w, self.weight(deflection, pdf_w))
+    }
+}
+
+/// The same expression for every kind.
+macro_rules! each {
+    ($phase:expr, $lobe:ident => $value:expr) => {
+        match $phase {
+            PhaseFunction::Isotropic($lobe) => $value,
+            PhaseFunction::LinearAnisotropic($lobe) => $value,
+            PhaseFunction::Rayleigh($lobe) => $value,
+            PhaseFunction::Atmosphere($lobe) => $value,
+            PhaseFunction::HenyeyGreenstein($lobe) => $value,
+            PhaseFunction::TwoTermHenyeyGreenstein($lobe) => $value,
+            PhaseFunction::CornetteShanks($lobe) => $value,
+            PhaseFunction::Schlick($lobe) => $value,
+            PhaseFunction::TwoTermSchlick($lobe) => $value,
+            PhaseFunction::DiffuseSpheres($lobe) => $value,
+            PhaseFunction::SpecularSpheres($lobe) => $value,
+            PhaseFunction::Sakas($lobe) => $value,
+            PhaseFunction::Gaussian($lobe) => $value,
+            PhaseFunction::FournierForand($lobe) => $value,
+            PhaseFunction::Draine($lobe) => $value,
+            PhaseFunction::Tabulated($lobe) => $value,
+        }
+    };
+}
 
 impl PhaseFunction {
     /// Density of scattered light per solid angle, in 1/sr.
     #[inline]
-    pub fn value(&self, one_minus_cos: f32) -> f32 {
+    pub fn value(&self, deflection: Deflection) -> f32 {
         match self {
-            Self::Isotropic(p) => p.value(),
-            Self::HenyeyGreenstein(p) => p.value(one_minus_cos),
+            Self::Isotropic(lobe) => lobe.value(deflection),
+            Self::HenyeyGreenstein(lobe) => lobe.value(deflection),
+            _ => self.any_value(deflection),
         }
     }
 
     /// Density with which [`PhaseFunction::sample`] takes that angle, per solid angle.
     #[inline]
-    pub fn pdf_w(&self, one_minus_cos: f32) -> f32 {
-        self.value(one_minus_cos)
+    pub fn pdf_w(&self, deflection: Deflection) -> f32 {
+        match self {
+            Self::Isotropic(lobe) => lobe.pdf_w(deflection),
+            Self::HenyeyGreenstein(lobe) => lobe.pdf_w(deflection),
+            _ => self.any_pdf_w(deflection),
+        }
     }
 
     /// A new direction for light (or an eye path) that travelled along `forward`.
     #[inline]
     pub fn sample(&self, forward: Vec3, u: [f32; 2]) -> PhaseSample {
-        let one_minus_cos = match self {
-            Self::Isotropic(p) => p.sample(u[0]),
-            Self::HenyeyGreenstein(p) => p.sample(u[0]),
+        let (deflection, pdf_w, weight) = match self {
+            Self::Isotropic(lobe) => lobe.sampled(u[0]),
+            Self::HenyeyGreenstein(lobe) => lobe.sampled(u[0]),
+            _ => self.any_sampled(u[0]),
         };
-        let wi = Frame::around(forward).to_world(warp::around_z(one_minus_cos, u[1])).normalize();
-        PhaseSample { wi, weight: 1.0, pdf_w: self.pdf_w(one_minus_cos) }
+        let wi = Frame::around(forward).to_world(deflection.around_z(u[1])).normalize();
+        PhaseSample { wi, weight, pdf_w }
     }
 
     /// Mean cosine of the angle of deflection; positive is forward.
     pub fn mean_cosine(&self) -> f32 {
-        match self {
-            Self::Isotropic(_) => 0.0,
-            Self::HenyeyGreenstein(p) => p.g,
-        }
+        each!(self, lobe => lobe.mean_cosine())
     }
-}
 
-/// 1 - cos of the angle between two unit vectors, exact for small angles.
-#[inline]
-pub fn one_minus_cos(a: Vec3, b: Vec3) -> f32 {
-    0.5 * (a - b).length_squared()
+    // Kept out of the callers' loops, where the two commonest kinds are.
+    #[inline(never)]
+    fn any_value(&self, deflection: Deflection) -> f32 {
+        each!(self, lobe => lobe.value(deflection))
+    }
+
+    #[inline(never)]
+    fn any_pdf_w(&self, deflection: Deflection) -> f32 {
+        each!(self, lobe => lobe.pdf_w(deflection))
+    }
+
+    #[inline(never)]
+    fn any_sampled(&self, u: f32) -> (Deflection, f32, f32) {
+        each!(self, lobe => lobe.sampled(u))
+    }
 }

@@ -20,6 +20,28 @@ impl Allowed {
     pub const UNIT: Self = Self::closed(0.0, 1.0, "a number from 0 to 1");
     /// A mean cosine.
     pub const MEAN_COSINE: Self = Self::open(-1.0, 1.0, "a number between -1 and 1, both excluded");
+    /// The parameter of a phase function whose narrowest peaks are tabulated.
+    pub const PEAKED: Self = Self::closed(-0.99999, 0.99999, "a number from -0.99999 to 0.99999");
+    /// A slope of the cosine.
+    pub const SLOPE: Self = Self::closed(-1.0, 1.0, "a number from -1 to 1");
+    /// The exponent of a phase function.
+    pub const EXPONENT: Self = Self::closed(0.0, 1000.0, "a number from 0 to 1000");
+    /// How fast a Gaussian lobe falls.
+    pub const GAUSSIAN: Self = Self::closed(0.0, 1e8, "a number from 0 to 1e8, per radian squared");
+    /// An index relative to the medium around.
+    pub const RELATIVE_INDEX: Self =
+        Self::closed(0.05, 20.0, "an index relative to the medium from 0.05 to 20");
+    /// The imaginary part of an index relative to the medium around.
+    pub const RELATIVE_ABSORPTION: Self =
+        Self::closed(0.0, 20.0, "the imaginary part of a relative index, from 0 to 20");
+    /// The index of particles in the ocean, relative to water.
+    pub const OCEAN_INDEX: Self = Self::closed(1.01, 1.4, "an index relative to water from 1.01 to 1.4");
+    /// The slope of the size distribution of particles in the ocean.
+    pub const OCEAN_SLOPE: Self = Self::closed(3.05, 4.95, "a slope of the sizes, from 3.05 to 4.95");
+    /// The share that particles in the ocean scatter back.
+    pub const BACKSCATTER: Self = Self::closed(1e-4, 0.2, "a share of light from 0.0001 to 0.2");
+    /// An angle of deflection in degrees.
+    pub const DEFLECTION: Self = Self::closed(0.0, 180.0, "an angle from 0 to 180 degrees");
     /// An angle in degrees below a half turn.
     pub const HALF_TURN: Self = Self::open(0.0, 180.0, "an angle between 0 and 180 degrees, both excluded");
     /// A coordinate. Beyond this even re-centred positions lose the scene.

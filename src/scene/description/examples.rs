@@ -10,13 +10,14 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 6] = [
+pub const EXAMPLES: [Example; 7] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
     Example { name: "surfaces", text: SURFACES },
     Example { name: "automatic camera", text: AUTOMATIC_CAMERA },
     Example { name: "plain numbers", text: PLAIN_NUMBERS },
+    Example { name: "phase functions", text: PHASE_FUNCTIONS },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -186,4 +187,29 @@ absorption = 0x10
 
 [sky]
 radiance = { wavelength = [380, 780], value = [1, +2.5e-1] }
+"#;
+
+const PHASE_FUNCTIONS: &str = r#"
+[media]
+even = { scattering = 1, phase = { kind = "isotropic" } }
+linear = { scattering = 1, phase = { kind = "linear-anisotropic", a = -0.5 } }
+gas = { scattering = 1, phase = { kind = "rayleigh" } }
+haze = { scattering = 1, phase = { kind = "hazy" } }
+smog = { scattering = 1, phase = { kind = "murky", form = "nishita" } }
+fog = { scattering = 1, phase = { kind = "murky", form = "normalised" } }
+milk = { scattering = 1, phase = { kind = "henyey-greenstein", g = -0.9999 } }
+dust = { scattering = 1, phase = { kind = "two-term-henyey-greenstein", share = 0.9, g1 = 0.8, g2 = -0.3 } }
+cloud = { scattering = 1, phase = { kind = "cornette-shanks", g = 0.7 } }
+space = { scattering = 1, phase = { kind = "draine", g = 0.5, alpha = 1.5 } }
+lobe = { scattering = 1, phase = { kind = "schlick", k = 0.7 } }
+fit = { scattering = 1, phase = { kind = "two-term-schlick", fit = "murky" } }
+lobes = { scattering = 1, phase = { kind = "two-term-schlick", share = 0.5, k1 = 0.7, k2 = -0.7 } }
+snow = { scattering = 1, phase = { kind = "diffuse-spheres" } }
+bubbles = { scattering = 1, phase = { kind = "specular-spheres", ior = 0.75 } }
+silver = { scattering = 1, phase = { kind = "specular-spheres", ior = 0.13, k = 3.2 } }
+smoke = { scattering = 1, phase = { kind = "sakas", n = 4 } }
+glow = { scattering = 1, phase = { kind = "gaussian", gamma = 10 } }
+ocean = { scattering = 1, phase = { kind = "fournier-forand", ior = 1.1, mu = 3.5835 } }
+coast = { scattering = 1, phase = { kind = "fournier-forand", backscatter = 0.0183 } }
+measured = { scattering = 1, phase = { kind = "tabulated", angle = [0, 10, 90, 180], value = [1e6, 30, 1, 2] } }
 "#;

@@ -1,15 +1,16 @@
-//! Reads `[media.NAME]`: refractive index, absorption, scattering and phase function.
+//! Reads `[media.NAME]`: refractive index, absorption and scattering.
 
 use std::collections::BTreeMap;
 
 use super::allowed::Allowed;
 use super::error::SceneError;
 use super::nearest::suggestion;
+use super::phase;
 use super::spectrum_value;
 use super::value::Value;
 use super::{AbsorptionDescription, MediumDescription};
 use crate::optics::RefractiveIndex;
-use crate::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
+use crate::optics::phase::{Isotropic, PhaseFunction};
 use crate::spectrum::Spectrum;
 
 /// The medium that every scene has.
@@ -62,7 +63,7 @@ fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
         scattering: table
             .get("scattering")
             .map_or(Ok(default.scattering), |v| spectrum_value::spectrum(&v, &Allowed::NOT_NEGATIVE))?,
-        phase: table.get("phase").map_or(Ok(default.phase), |v| phase(&v))?,
+        phase: table.get("phase").map_or(Ok(default.phase), |v| phase::read(&v))?,
     };
     table.finish()?;
     Ok(medium)
@@ -134,26 +135,4 @@ fn absorption(value: &Value<'_>) -> Result<AbsorptionDescription, SceneError> {
         Substance::Water => AbsorptionDescription::Water,
         Substance::Ice => AbsorptionDescription::Ice,
     })
-}
-
-/// `phase = { kind = .. }`
-fn phase(value: &Value<'_>) -> Result<PhaseFunction, SceneError> {
-    #[derive(Clone, Copy)]
-    enum Kind {
-        Isotropic,
-        HenyeyGreenstein,
-    }
-    let forms = "{ kind = \"isotropic\" } or { kind = \"henyey-greenstein\", g = 0.9 }";
-    let table = value.table(forms)?;
-    let kind = table.require("kind", &format!("write {forms}"))?;
-    let kinds = [("isotropic", Kind::Isotropic), ("henyey-greenstein", Kind::HenyeyGreenstein)];
-    let phase = match kind.choice(&kinds)? {
-        Kind::Isotropic => PhaseFunction::Isotropic(Isotropic),
-        Kind::HenyeyGreenstein => {
-            let g = table.require("g", "write the mean cosine, such as g = 0.9")?;
-            PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: g.number32(&Allowed::MEAN_COSINE)? })
-        }
-    };
-    table.finish()?;
-    Ok(phase)
 }

@@ -18,6 +18,7 @@ mod material;
 mod media;
 mod nearest;
 mod output;
+mod phase;
 mod regions;
 mod render;
 mod scene;
