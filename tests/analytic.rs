@@ -15,6 +15,7 @@ mod analytic {
     mod furnaces;
     mod lamps;
     mod limits;
+    mod media;
     mod spectral;
     mod sunlight;
     mod walls;

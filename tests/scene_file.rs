@@ -100,6 +100,29 @@ fn spectra_in_every_form() {
 }
 
 #[test]
+fn media_in_every_notation() {
+    let media = example("turbid").media;
+    assert_eq!(media["lava"].emission, Spectrum::Planck { temperature: 1500.0 });
+    let (min, max) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 4.0));
+    let grid = DensityDescription::Grid { file: "plume_####.npy".to_owned(), min, max };
+    assert_eq!((&media["flame"].density, &media["flame"].emission), (&grid, &Spectrum::Rgb([9.0, 4.0, 1.0])));
+    let river = &media["river"];
+    assert_eq!(river.absorption, Some(AbsorptionDescription::Water));
+    assert_eq!(river.scattering, Spectrum::Rgb([400.0, 420.0, 440.0].map(|v: f32| v * 0.05)));
+    assert_eq!(river.density, DensityDescription::Stratified { depth: -0.5, surface: -1.2 });
+    let values = [9000.0, 7000.0].map(|v: f32| v * 1e-4).to_vec();
+    let soot = Spectrum::Table { wavelengths: vec![400.0, 700.0], values };
+    assert_eq!(media["soot"].absorption, Some(AbsorptionDescription::Spectrum(soot)));
+    let milk = &media["milk"];
+    let extinction = ExtinctionDescription {
+        extinction: Spectrum::Rgb([80.0, 90.0, 100.0]),
+        albedo: Spectrum::Constant(0.999),
+    };
+    assert_eq!((&milk.extinction, &milk.absorption), (&Some(extinction), &None));
+    assert_eq!(milk.density, DensityDescription::Stratified { depth: 2.0, surface: 0.0 });
+}
+
+#[test]
 fn surfaces_and_their_materials() {
     let scene = example("surfaces");
     let [bottom, tank, mist, mirror, lamp, floor] = scene.surfaces.as_slice() else { panic!() };
@@ -149,7 +172,12 @@ const WRONG_KEYS: &[Wrong] = &[
     ("\n[meda.sea]\nior = 1.3", 2, 2, "unknown key `meda` in the scene file; did you mean `media`?"),
     ("path = 'x'\n[sky]\nradiance = 1", 1, 1, "unknown key `path` in the scene file: the known keys are `frames`"),
     ("[frames]\npath = 'f'\nvelocity = 'auto'", 3, 1, "unknown key `velocity` in [frames]: the known keys are"),
-    ("[media.sea]\nior = 1.3\nemission = 0", 3, 1, "unknown key `emission` in [media.sea]"),
+    ("[media.a]\ndensity = { stratified = 1, surfaces = 0 }", 2, 29, "unknown key `surfaces` in [media.a.density]"),
+    ("[media.a]\ndensity = { grid = 'a.npy', box = [[0, 0, 0], [1, 1, 1]], surface = 0 }", 2, 59, "unknown key `surface`"),
+    ("[media.a]\ndensity = { grid = 'a.npy' }", 2, 11, "[media.a.density] has no `box`: write the least and the"),
+    ("[media.a]\nalbedo = 0.5", 1, 1, "[media.a] has no `extinction`: `albedo` is a share of it"),
+    ("[media.a]\nextinction = 0.5", 1, 1, "[media.a] has no `albedo`: write the share of scattering"),
+    ("[media.a]\nmass_scattering = 5", 1, 1, "[media.a] has no `mass_concentration`: mass coefficients need it"),
     ("[media.ice]\nmodel = 'iceberg'", 2, 1, "unknown key `model` in [media.ice]"),
     ("[render]\nsample = 4", 2, 1, "did you mean `samples`?"),
     ("[render]\ntarget_error = 0.1", 2, 1, "unknown key `target_error` in [render]"),
@@ -259,6 +287,15 @@ const WRONG_NUMBERS: &[Wrong] = &[
      "media.a.absorption.wavelength[1]: 500: wavelengths must rise strictly"),
     ("[media.a]\nabsorption = { wavelength = [0.5], value = [1] }", 2, 30, "write a wavelength from 1 to 1e6"),
     ("[media.a]\nabsorption = { wavelength = [], value = [] }", 2, 29, "write rising wavelengths in nanometres"),
+    ("[media.a]\nextinction = 1\nalbedo = 1.5", 3, 10, "media.a.albedo: 1.5: write a number from 0 to 1"),
+    ("[media.a]\nmass_scattering = 1\nmass_concentration = -1", 3, 22, "write a number that is not below 0"),
+    ("[media.a]\nmass_scattering = 1e30\nmass_concentration = 1e30", 2, 19, "times `mass_concentration` it leaves single"),
+    ("[media.a]\nabsorption = 1\nemission = -1", 3, 12, "media.a.emission: -1: write a number that is not below 0"),
+    ("[media.a]\ndensity = { stratified = 0 }", 2, 26, "media.a.density.stratified: 0: write the depth in metres"),
+    ("[media.a]\ndensity = { stratified = inf }", 2, 26, "write a number from -1e12 to 1e12"),
+    ("[media.a]\ndensity = 2", 2, 11, "media.a.density: 2: write { stratified = 0.5, surface = 0.0 } or { grid"),
+    ("[media.a]\ndensity = {}", 2, 11, "media.a.density: {}: write { stratified = 0.5, surface = 0.0 } or { grid"),
+    ("[media.a]\ndensity = { grid = 3, box = [[0, 0, 0], [1, 1, 1]] }", 2, 20, "write the name of a .npy or .nrrd file"),
     ("[frames]\npath = 'f'\nscale = 0", 3, 9, "frames.scale: 0: write a number from 1e-12"),
     ("[frames]\npath = 'f'\nfps = -24", 3, 7, "frames.fps: -24: write a number above 0"),
     ("[domain]\nbox = [[0, 0, 0], [1, 1, nan]]", 2, 26, "domain.box[1][2]: nan: write a number from -1e12"),
@@ -288,6 +325,15 @@ const WRONG_NUMBERS: &[Wrong] = &[
 #[rustfmt::skip]
 const WRONG_RELATIONS: &[Wrong] = &[
     ("[media.\"\"]\nior = 1", 1, 8, "[media]: ``: a medium needs a name"),
+    ("[media.a]\nemission = 1", 2, 12, "media.a.emission: 1: a medium emits as it absorbs, and this one absorbs nothing"),
+    ("[media.a]\nabsorption = [0, 0, 0]\nscattering = 1\nemission = { blackbody = 900 }", 4, 12, "absorbs nothing"),
+    ("[media.a]\nextinction = 2\nalbedo = 1\nemission = 1", 4, 12, "give it `absorption`, or remove `emission`"),
+    ("[media.a]\nabsorption = 1\nextinction = 2\nalbedo = 1", 2, 14, "media.a.absorption: 1: `extinction` and `albedo` say"),
+    ("[media.a]\nmass_concentration = 1\nextinction = 2\nalbedo = 1", 2, 22, "remove this or them"),
+    ("[media.a]\nscattering = 1\nmass_scattering = 2\nmass_concentration = 1", 3, 19, "remove one of the two"),
+    ("[media.a]\nabsorption = 1\nmass_concentration = 1", 3, 22, "nothing is multiplied by it"),
+    ("[media.a]\ndensity = { stratified = 1, grid = 'a.npy' }", 2, 36, "remove one of `stratified` and `grid`"),
+    ("[media.a]\ndensity = { grid = 'a.npy', box = [[0, 0, 0], [1, 0, 1]] }", 2, 35, "each coordinate of the first corner"),
     ("[regions]\n1 = 'see'\n[media.sea]", 2, 5,
      "regions.1: 'see': label 1 needs a medium [media.see], which is not there: did you mean `sea`?"),
     ("[regions]\n1 = 'oil'", 2, 5,

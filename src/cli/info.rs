@@ -9,8 +9,10 @@ use super::exit::Exit;
 use super::streams::{print, say};
 use crate::driver::{Job, RenderError};
 use crate::mesh;
+use crate::optics::density::Density;
 use crate::scene::FrameError;
 use crate::scene::assembly::{Assembled, FrameMesh};
+use crate::scene::description::DensityDescription;
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
 use crate::spectrum::LaneMode;
@@ -110,8 +112,33 @@ fn describe_media(world: &World) -> String {
             medium.sigma_s.maximum(),
             medium.phase.mean_cosine()
         );
+        if medium.glows() {
+            let _ = writeln!(text, "    emits up to {:.4e}", medium.emission.maximum());
+        }
+        if let Some(density) =
+            describe_density(&world.description.media[&medium.name].density, &medium.density)
+        {
+            let _ = writeln!(text, "    density {density}");
+        }
     }
     text
+}
+
+fn describe_density(described: &DensityDescription, density: &Density) -> Option<String> {
+    match described {
+        DensityDescription::Homogeneous => None,
+        DensityDescription::Stratified { depth, surface } => {
+            let way = if *depth > 0.0 { "down" } else { "up" };
+            Some(format!("1 at height {surface} m, falling to 1/e within {} m further {way}", depth.abs()))
+        }
+        DensityDescription::Grid { file, .. } => Some(match density {
+            Density::Grid(grid) => {
+                let [x, y, z] = grid.cells();
+                format!("of {file}: {x} x {y} x {z} cells, up to {}", grid.maximum())
+            }
+            _ => format!("of {file}, one for each frame"),
+        }),
+    }
 }
 
 fn describe_frame(number: &str, assembled: &Assembled) -> String {

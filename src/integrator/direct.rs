@@ -109,7 +109,7 @@ impl Sample<'_> {
         for hit in &self.scratch.crossings {
             let Surface::Interface(pair) = self.frame.surface(hit.triangle) else { continue };
             let beyond = pair.crossed(hit.from_front).1;
-            left *= self.scratch.media[medium.0 as usize].transmittance(hit.t - travelled);
+            left *= self.transmittance_of(medium, ray, travelled, hit.t);
             // From the medium that light is in: at an edge both triangles are met, and the second changes nothing.
             left *= self.index_factor(medium, beyond);
             (medium, travelled) = (beyond, hit.t);
@@ -117,7 +117,18 @@ impl Sample<'_> {
         if self.ends_in_the_dark(ray, medium) {
             return Lanes::ZERO;
         }
-        left * self.scratch.media[medium.0 as usize].transmittance(ray.t_max - travelled)
+        left * self.transmittance_of(medium, ray, travelled, ray.t_max)
+    }
+
+    /// What one medium leaves of light between two distances along a ray.
+    #[inline]
+    fn transmittance_of(&self, medium: MediumId, ray: &Ray, from: f32, to: f32) -> Lanes {
+        let mut length = to - from;
+        if self.frame.needs.heterogeneous {
+            let way = Ray { origin: ray.at(from), direction: ray.direction, t_max: length };
+            length = self.frame.medium(medium).density.length(&way);
+        }
+        self.scratch.media[medium.0 as usize].transmittance(length)
     }
 
     /// True when the ray runs to infinity in a medium without end.

@@ -48,6 +48,9 @@ pub struct FirstHit {
 pub struct Scratch {
     /// Coefficients of every medium at the wavelengths of the current sample.
     pub(crate) media: Vec<MediumLanes>,
+    /// What an endless depth of every medium adds to a path ([`crate::optics::medium::Medium::source`]); empty where
+    /// nothing glows.
+    pub(crate) sources: Vec<Lanes>,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
@@ -61,6 +64,10 @@ impl Scratch {
     pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths) {
         self.media.clear();
         self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
+        self.sources.clear();
+        if frame.needs.emission {
+            self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths)));
+        }
         self.branches.clear();
         // Another scene may have had some.
         self.crossings.clear();

@@ -2,7 +2,9 @@
 //!
 //! Both branches, reflection and refraction, are followed at the first `split` interfaces of a path; afterwards one is
 //! chosen by Fresnel's reflectance. In media that only absorb the transmittance is exact; in media that scatter the
-//! free flight is drawn in one lane and weighted over all (one-sample spectral multiple importance sampling).
+//! free flight is drawn in one lane and weighted over all (one-sample spectral multiple importance sampling). Where the
+//! density changes from place to place, its integral along the ray stands in for the distance. What a medium emits
+//! between one event and the next surface is added as its expectation, exactly.
 //!
 //! Russian roulette acts on the throughput without the factors (n_a / n_b)^2 of the boundaries crossed, relative to the
 //! branch's share at the splits, so that a path which loses nothing is never ended by it.
@@ -13,7 +15,7 @@ use super::direct::Receiver;
 use super::{EyeSample, FirstHit, Scratch};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
-use crate::optics::medium::{FreeFlight, MediumId};
+use crate::optics::medium::{MediumId, MediumLanes};
 use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
@@ -164,26 +166,36 @@ impl PathTracer {
         let max_depth = if self.max_depth == 0 { u32::MAX } else { self.max_depth };
         let mut sample =
             Sample { frame, scratch, wavelengths, max_depth, radiance: Lanes::ZERO, first: None };
-        // Light transport is compiled four times over what the scene needs in its inner loop.
-        match (frame.needs.scattering, frame.needs.direct_light) {
-            (false, false) => self.follow_all::<false, false>(&mut sample),
-            (false, true) => self.follow_all::<false, true>(&mut sample),
-            (true, false) => self.follow_all::<true, false>(&mut sample),
-            (true, true) => self.follow_all::<true, true>(&mut sample),
+        // Light transport is compiled five times over what the scene needs in its inner loop.
+        let varied = frame.needs.heterogeneous || frame.needs.emission;
+        match (varied, frame.needs.scattering, frame.needs.direct_light) {
+            (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
+            (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
+            (false, true, false) => self.follow_all::<true, false, false>(&mut sample),
+            (false, true, true) => self.follow_all::<true, true, false>(&mut sample),
+            (true, ..) => self.follow_all::<true, true, true>(&mut sample),
         }
         EyeSample { radiance: sample.radiance, first: sample.first }
     }
 
-    fn follow_all<const SCATTERING: bool, const DIRECT: bool>(&self, sample: &mut Sample) {
+    fn follow_all<const SCATTERING: bool, const DIRECT: bool, const VARIED: bool>(
+        &self,
+        sample: &mut Sample,
+    ) {
         while let Some(mut branch) = sample.scratch.branches.pop() {
-            while sample.advance::<SCATTERING, DIRECT>(&mut branch) == Fate::GoesOn {}
+            while sample.advance::<SCATTERING, DIRECT, VARIED>(&mut branch) == Fate::GoesOn {}
         }
     }
 }
 
 impl Sample<'_> {
     /// Follows a branch to its next event and through it.
-    fn advance<const SCATTERING: bool, const DIRECT: bool>(&mut self, branch: &mut Branch) -> Fate {
+    ///
+    /// `VARIED` is for media of varying density and for those that emit.
+    fn advance<const SCATTERING: bool, const DIRECT: bool, const VARIED: bool>(
+        &mut self,
+        branch: &mut Branch,
+    ) -> Fate {
         if branch.steps >= HARD_LIMIT {
             return self.cut(branch);
         }
@@ -191,42 +203,78 @@ impl Sample<'_> {
         let u = branch.stream.next4();
         let medium = self.scratch.media[branch.medium.0 as usize];
         let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u[0]));
+        let endless = Ray::new(branch.origin, branch.direction);
+        let to_particle = flight.map_or(f32::INFINITY, |f| match VARIED {
+            true => self.frame.medium(branch.medium).density.distance(&endless, f.distance),
+            false => f.distance,
+        });
         if SCATTERING
+            && !VARIED
             && let Some(flight) = &flight
-            && branch.clearing.holds(branch.origin + branch.direction * flight.distance)
+            && branch.clearing.holds(endless.at(to_particle))
         {
             self.scratch.counters.untraced += 1;
             branch.throughput *= medium.scatter_weight(flight);
-            return self.scatter::<DIRECT>(branch, flight, u);
+            return self.scatter::<DIRECT>(branch, to_particle, u);
         }
-        let t_max = flight.map_or(f32::INFINITY, |f| f.distance + rounding(branch.origin, f.distance));
-        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max };
-        self.scratch.counters.rays += 1;
-        match (self.nearest(branch, &ray), flight) {
+        let t_max = to_particle + rounding(branch.origin, to_particle);
+        let found = if VARIED {
+            self.nearest_and_glow(branch, &medium, t_max)
+        } else {
+            self.nearest(branch, &Ray { t_max, ..endless })
+        };
+        match (found, flight) {
             (Some(hit), flight) => {
                 branch.clearing = Clearing::NONE;
+                let length = self.length::<VARIED>(branch, hit.t);
                 branch.throughput *= match flight {
-                    Some(flight) => medium.pass_weight(&flight, hit.t),
-                    None => medium.transmittance(hit.t),
+                    Some(flight) => medium.pass_weight(&flight, length),
+                    None => medium.transmittance(length),
                 };
                 let hit = self.frame.geometry.surface_hit(&hit, branch.direction);
                 self.meet::<DIRECT>(branch, &hit, u)
             }
-            (None, Some(flight)) if flight.distance.is_finite() => {
-                let point = branch.origin + branch.direction * flight.distance;
+            (None, Some(flight)) if to_particle.is_finite() => {
+                let point = endless.at(to_particle);
                 branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
                 branch.throughput *= medium.scatter_weight(&flight);
-                self.scatter::<DIRECT>(branch, &flight, u)
+                self.scatter::<DIRECT>(branch, to_particle, u)
             }
             (None, flight) => {
+                let length = self.length::<VARIED>(branch, f32::INFINITY);
                 branch.throughput *= match flight {
-                    Some(flight) => medium.pass_weight(&flight, f32::INFINITY),
-                    None => medium.transmittance(f32::INFINITY),
+                    Some(flight) => medium.pass_weight(&flight, length),
+                    None => medium.transmittance(length),
                 };
                 self.escape(branch);
                 Fate::Ends
             }
         }
+    }
+
+    /// The next surface if it is nearer than `t_max`, and what the medium emits on the way to it, however far it is.
+    fn nearest_and_glow(&mut self, branch: &Branch, medium: &MediumLanes, t_max: f32) -> Option<Hit> {
+        let glows =
+            self.frame.needs.emission && self.scratch.sources[branch.medium.0 as usize] != Lanes::ZERO;
+        let reach = if glows { f32::INFINITY } else { t_max };
+        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: reach };
+        let found = self.nearest(branch, &ray);
+        if glows {
+            let length = self.length::<true>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
+            let source = self.scratch.sources[branch.medium.0 as usize];
+            self.radiance += branch.throughput * source * medium.opacity(length);
+        }
+        found.filter(|hit| hit.t <= t_max)
+    }
+
+    /// Metres of density 1 along the path's ray up to a distance.
+    #[inline]
+    fn length<const VARIED: bool>(&self, branch: &Branch, distance: f32) -> f32 {
+        if !VARIED {
+            return distance;
+        }
+        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: distance };
+        self.frame.medium(branch.medium).density.length(&ray)
     }
 
     /// The surface that the path meets next.
@@ -237,6 +285,7 @@ impl Sample<'_> {
     /// not belong to the path's medium is looked through where rounding alone may have made it be met, and gives way
     /// elsewhere to one that does belong and is as far away.
     fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
+        self.scratch.counters.rays += 1;
         let (mut from, mut passed) = (*ray, 0.0);
         let mut ignored = Ignored::one(branch.leaves);
         let mut found = self.frame.accel.closest(&from, ignored);
@@ -281,14 +330,14 @@ impl Sample<'_> {
     }
 
     /// The path turns at a particle of the medium.
-    fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, flight: &FreeFlight, u: [f32; 4]) -> Fate {
+    fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, distance: f32, u: [f32; 4]) -> Fate {
         if branch.throughput.max_element() <= 0.0 {
             return Fate::Ends;
         }
         if self.is_spent(branch) {
             return Fate::Ends;
         }
-        let point = branch.origin + branch.direction * flight.distance;
+        let point = branch.origin + branch.direction * distance;
         if branch.interactions == 0 && self.first.is_none() {
             self.first = Some(FirstHit {
                 distance: (point - self.frame.camera.eye()).length(),

@@ -1,16 +1,25 @@
-//! What fills a region: how it bends, absorbs and scatters light.
+//! What fills a region: how it bends, absorbs, scatters and emits light.
+//!
+//! A medium that emits adds sigma_a n^2 Le to the radiance along each metre, Le being the radiance that an endless depth
+//! of it would show in a medium of index 1 (Kirchhoff; L / n^2 is what boundaries leave alone). Along a way of which
+//! nothing else is added,
+//!
+//! ```text
+//! L = n^2 Le sigma_a / sigma_t (1 - exp(-sigma_t d))
+//! ```
 
 use glam::Vec4;
 
+use super::density::Density;
 use super::phase::PhaseFunction;
-use crate::geometry::elementary::{exp4, ln};
+use crate::geometry::elementary::{exp4, ln, one_minus_exp4};
 use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
 
 /// Index of a medium in its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MediumId(pub u16);
 
-/// A homogeneous medium.
+/// A medium.
 #[derive(Clone, Debug)]
 pub struct Medium {
     /// Its name in the scene file.
@@ -21,8 +30,12 @@ pub struct Medium {
     pub sigma_a: LaneCurve,
     /// Scattering coefficient in 1/m.
     pub sigma_s: LaneCurve,
+    /// Le: the radiance of an endless depth that does not scatter, over n^2.
+    pub emission: LaneCurve,
     /// Where scattered light goes.
     pub phase: PhaseFunction,
+    /// What both coefficients are multiplied by from place to place.
+    pub density: Density,
 }
 
 /// A medium's coefficients at the wavelengths of one path.
@@ -39,6 +52,8 @@ pub struct MediumLanes {
 }
 
 /// How far light goes before it meets a particle.
+///
+/// Distances here and in [`MediumLanes`] are metres of density 1: lengths in the sense of [`Density`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeFlight {
     /// Distance in metres; infinite where nothing is in the way.
@@ -54,6 +69,28 @@ impl Medium {
         let sigma_t = self.sigma_a.lanes(wavelengths) + sigma_s;
         MediumLanes { sigma_s, sigma_t, scatters: sigma_s != Lanes::ZERO, clear: sigma_t == Lanes::ZERO }
     }
+
+    /// True when it takes more from light in some places than in others.
+    pub fn is_heterogeneous(&self) -> bool {
+        let clear = self.sigma_a.is_zero() && self.sigma_s.is_zero();
+        !clear && !self.density.is_homogeneous()
+    }
+
+    /// True when it adds light to a path.
+    pub fn glows(&self) -> bool {
+        !self.emission.is_zero() && !self.sigma_a.is_zero()
+    }
+
+    /// n^2 Le sigma_a / sigma_t: what an endless depth adds to the radiance of a way.
+    pub fn source(&self, wavelengths: &Wavelengths) -> Lanes {
+        if !self.glows() {
+            return Lanes::ZERO;
+        }
+        let sigma_a = self.sigma_a.lanes(wavelengths);
+        let sigma_t = sigma_a + self.sigma_s.lanes(wavelengths);
+        let share = Vec4::select(sigma_a.cmpgt(Vec4::ZERO), sigma_a / sigma_t, Vec4::ZERO);
+        self.emission.lanes(wavelengths) * share * (self.n * self.n)
+    }
 }
 
 impl MediumLanes {
@@ -66,6 +103,13 @@ impl MediumLanes {
         // 0 times infinity is a clear lane: nothing is lost there however far the light goes.
         let depth = self.sigma_t * distance;
         exp4(-Vec4::select(self.sigma_t.cmpeq(Vec4::ZERO), Vec4::ZERO, depth))
+    }
+
+    /// 1 - exp(-sigma_t d): what is lost on the way, with its digits where that is little.
+    #[inline]
+    pub fn opacity(&self, distance: f32) -> Lanes {
+        let depth = self.sigma_t * distance;
+        one_minus_exp4(Vec4::select(self.sigma_t.cmpeq(Vec4::ZERO), Vec4::ZERO, depth))
     }
 
     /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`.

@@ -6,12 +6,14 @@
 //! Indices are n + i k with k >= 0 absorbing. `eta_t_over_i` is the index on the far side over the index on the side
 //! that the light, or the path, comes from. Coefficients are in 1/m, wavelengths in nm in vacuum.
 
+pub mod density;
 pub mod fresnel;
 pub mod ice;
 pub mod medium;
 pub mod phase;
 pub mod refraction;
 pub mod refractive_index;
+pub mod volume;
 pub mod water;
 
 pub use refractive_index::RefractiveIndex;

@@ -16,7 +16,7 @@ use crate::accel::{Accel, Connectivity, Update};
 use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
 use crate::mesh::{self, Interface, RawMesh, Region, normals};
-use crate::optics::medium::MediumId;
+use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::{FrameNumber, frame_path, has_place};
 use crate::spectrum::{Role, Spectrum};
 
@@ -91,7 +91,7 @@ impl World {
             let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
             assembly.parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
         }
-        Ok(assembly.finish(accel, previous))
+        Ok(assembly.finish(self.media_at(number)?, accel, previous))
     }
 }
 
@@ -194,7 +194,7 @@ impl<'a> Assembly<'a> {
         self.parts.push_surface(Surface::Diffuse { reflectance })
     }
 
-    fn finish(self, accel: Accel, previous: Option<&Frame>) -> Assembled {
+    fn finish(self, media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
         let world = self.world;
         let lights = Lights {
             environment: world.environment.clone(),
@@ -210,14 +210,14 @@ impl<'a> Assembly<'a> {
         };
         let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
         let lit = self.lit(&lights);
-        let needs = self.needs(&lights, &lit, camera_medium);
+        let needs = self.needs(&media, &lights, &lit, camera_medium);
         Assembled {
             frame: Frame {
                 mode: world.mode,
                 origin: world.origin,
                 camera: world.camera.clone(),
                 camera_medium,
-                media: world.media.clone(),
+                media,
                 endless: self.endless,
                 lit,
                 geometry: self.parts.geometry,
@@ -245,14 +245,14 @@ impl<'a> Assembly<'a> {
         if self.parts.emitters.is_empty() { None } else { AreaLights::new(triangles.collect()) }
     }
 
-    fn needs(&self, lights: &Lights, lit: &[bool], camera_medium: MediumId) -> Needs {
-        let mut used = vec![false; self.world.media.len()];
+    fn needs(&self, media: &[Medium], lights: &Lights, lit: &[bool], camera_medium: MediumId) -> Needs {
+        let mut used = vec![false; media.len()];
         used[camera_medium.0 as usize] = true;
         for pair in self.parts.pairs.keys() {
             used[pair.front.0 as usize] = true;
             used[pair.back.0 as usize] = true;
         }
-        let in_use = || self.world.media.iter().enumerate().filter(|(i, _)| used[*i]);
+        let in_use = || media.iter().enumerate().filter(|(i, _)| used[*i]);
         let scattering = in_use().any(|(_, m)| !m.sigma_s.is_zero());
         let lit_scattering = in_use().any(|(i, m)| lit[i] && !m.sigma_s.is_zero());
         let diffuse = self.parts.surfaces.iter().any(|s| matches!(s, Surface::Diffuse { .. }));
@@ -261,6 +261,8 @@ impl<'a> Assembly<'a> {
             direct_light: lights.are_sampled() && (lit_scattering || diffuse),
             matched_interfaces: self.parts.pairs.keys().any(|p| p.matched),
             attenuation: scattering || in_use().any(|(_, m)| !m.sigma_a.is_zero()),
+            heterogeneous: in_use().any(|(_, m)| m.is_heterogeneous()),
+            emission: in_use().any(|(_, m)| m.glows()),
             spectral: self.world.mode == crate::spectrum::LaneMode::Spectral,
             diffuse,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),

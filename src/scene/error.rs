@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::domain::DomainError;
 use crate::light::ImageError;
 use crate::mesh::MeshError;
+use crate::optics::volume::VolumeError;
 use crate::sequence::SequenceError;
 
 /// What went wrong between the files and the rays.
@@ -16,6 +17,9 @@ pub enum FrameError {
     /// The picture of the sky cannot be read.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// The grid of a medium's density cannot be read.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
     /// A pattern of a surface's mesh cannot be filled in.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
@@ -56,7 +60,9 @@ impl FrameError {
     pub fn is_not_found(&self) -> bool {
         match self {
             Self::Mesh(error) => error.is_not_found(),
-            Self::Image(ImageError::Io { source, .. }) => source.kind() == std::io::ErrorKind::NotFound,
+            Self::Image(ImageError::Io { source, .. }) | Self::Volume(VolumeError::Io { source, .. }) => {
+                source.kind() == std::io::ErrorKind::NotFound
+            }
             _ => false,
         }
     }

@@ -5,6 +5,7 @@
 
 pub mod assembly;
 pub mod camera;
+mod density;
 pub mod description;
 pub mod domain;
 pub mod error;

@@ -13,6 +13,10 @@ pub struct Needs {
     pub matched_interfaces: bool,
     /// Some medium absorbs or scatters.
     pub attenuation: bool,
+    /// The density of a medium in the frame changes from place to place.
+    pub heterogeneous: bool,
+    /// A medium in the frame emits light.
+    pub emission: bool,
     /// Something is given over wavelength.
     pub spectral: bool,
     /// There are diffuse surfaces.
@@ -44,6 +48,20 @@ impl Needs {
                 "transmittance",
                 self.attenuation,
                 if self.attenuation { "a medium absorbs or scatters" } else { "all media are clear" },
+            ),
+            line(
+                "varying density",
+                self.heterogeneous,
+                if self.heterogeneous {
+                    "a medium in the frame is stratified or a grid"
+                } else {
+                    "all media in the frame are homogeneous"
+                },
+            ),
+            line(
+                "emission of media",
+                self.emission,
+                if self.emission { "a medium in the frame glows" } else { "no medium in the frame glows" },
             ),
             line(
                 "next-event estimation",

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::camera::Camera;
+use super::density;
 use super::description::{
     AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
     Placement, SceneDescription, SkyDescription,
@@ -15,9 +16,10 @@ use super::parts::Parts;
 use crate::light::{Environment, Picture, Sun};
 use crate::mesh::{self, Region};
 use crate::optics::RefractiveIndex;
+use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
-use crate::sequence::has_place;
-use crate::spectrum::{LaneMode, Role, Spectrum};
+use crate::sequence::{FrameNumber, has_place};
+use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum};
 
 /// A scene without the meshes that change.
 #[derive(Clone, Debug)]
@@ -52,7 +54,10 @@ impl World {
         let origin = snapped(eye);
         let view = &description.camera;
         let camera = Camera::new(eye - origin, target - origin, view.up, view.fov, view.resolution);
-        let (media, names) = media_of(&description, mode);
+        let (mut media, names) = media_of(&description, mode);
+        for medium in &mut media {
+            medium.density = density::still(&description.media[&medium.name].density, &description, origin)?;
+        }
         let environment = environment_of(&description, mode)?;
         let sun = description.sun.as_ref().map(|sun| {
             let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
@@ -62,6 +67,18 @@ impl World {
         let mut world = Self { description, mode, origin, camera, media, environment, sun, still, names };
         world.still = world.still_parts()?;
         Ok(world)
+    }
+
+    /// The media of one frame: those with a grid for each frame get theirs.
+    pub(super) fn media_at(&self, number: FrameNumber) -> Result<Vec<Medium>, FrameError> {
+        let mut media = self.media.clone();
+        for medium in &mut media {
+            let description = &self.description.media[&medium.name].density;
+            if let Some(density) = density::of_frame(description, &self.description, self.origin, number)? {
+                medium.density = density;
+            }
+        }
+        Ok(media)
     }
 
     fn still_parts(&self) -> Result<Parts, FrameError> {
@@ -130,7 +147,11 @@ fn material_is_spectral(material: &MaterialDescription) -> bool {
 }
 
 fn medium_is_spectral(medium: &MediumDescription) -> bool {
-    absorption_of(medium).is_spectral() || medium.scattering.is_spectral()
+    let coefficients = match &medium.extinction {
+        Some(given) => given.extinction.is_spectral() || given.albedo.is_spectral(),
+        None => absorption_of(medium).is_spectral() || medium.scattering.is_spectral(),
+    };
+    coefficients || medium.emission.is_spectral()
 }
 
 fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTreeMap<String, MediumId>) {
@@ -143,12 +164,30 @@ fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTr
 }
 
 fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
+    let [sigma_a, sigma_s] = coefficients_of(medium, mode);
     Medium {
         name: name.into(),
         n: medium.ior.for_rays(),
-        sigma_a: absorption_of(medium).prepare(Role::Coefficient, mode),
-        sigma_s: medium.scattering.prepare(Role::Coefficient, mode),
+        sigma_a,
+        sigma_s,
+        emission: medium.emission.prepare(Role::Illuminant, mode),
         phase: medium.phase.clone(),
+        density: Density::default(),
+    }
+}
+
+/// Absorption and scattering.
+fn coefficients_of(medium: &MediumDescription, mode: LaneMode) -> [LaneCurve; 2] {
+    match &medium.extinction {
+        Some(given) => {
+            let sigma_t = given.extinction.prepare(Role::Coefficient, mode);
+            let albedo = given.albedo.prepare(Role::Reflectance, mode);
+            [sigma_t.combined(&albedo, |t, a| t * (1.0 - a)), sigma_t.combined(&albedo, |t, a| t * a)]
+        }
+        None => [
+            absorption_of(medium).prepare(Role::Coefficient, mode),
+            medium.scattering.prepare(Role::Coefficient, mode),
+        ],
     }
 }
 

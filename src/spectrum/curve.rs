@@ -77,7 +77,38 @@ impl LaneCurve {
     }
 }
 
+impl LaneCurve {
+    /// The curve whose lanes are a function of those of two curves, both prepared for the same mode.
+    pub fn combined(&self, other: &Self, value: impl Fn(f32, f32) -> f32) -> Self {
+        let table = |curve: &Self, i: usize| match curve {
+            Self::Constant(value) => *value,
+            Self::Rgb(lanes) => lanes[i.min(3)],
+            Self::Sampled(table) => table[i],
+        };
+        match (self, other) {
+            (Self::Constant(a), Self::Constant(b)) => Self::Constant(value(*a, *b)),
+            (Self::Sampled(_), _) | (_, Self::Sampled(_)) => {
+                Self::Sampled(Box::new(std::array::from_fn(|i| value(table(self, i), table(other, i)))))
+            }
+            _ => {
+                Self::Rgb(Lanes::from_array(std::array::from_fn(|i| value(table(self, i), table(other, i)))))
+            }
+        }
+    }
+}
+
 impl Spectrum {
+    /// True when it is zero at every wavelength.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Constant(value) => *value == 0.0,
+            Self::Rgb(rgb) => *rgb == [0.0; 3],
+            Self::Table { values, .. } => values.iter().all(|value| *value == 0.0),
+            Self::Blackbody { luminance, .. } => *luminance == 0.0,
+            Self::Planck { .. } => false,
+        }
+    }
+
     /// True when RGB cannot express it: tables and thermal radiation.
     pub fn is_spectral(&self) -> bool {
         !matches!(self, Self::Constant(_) | Self::Rgb(_))

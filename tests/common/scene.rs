@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use floe::driver::{Job, RenderError};
+
 use super::mesh::TestMesh;
 use super::render::{Prepared, prepare};
 
@@ -35,6 +37,13 @@ impl SceneFolder {
         let file = self.path("scene.toml");
         std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         prepare(&file)
+    }
+
+    /// Why the scene of this text cannot be opened.
+    pub fn refused(&self, toml: &str) -> RenderError {
+        let file = self.path("scene.toml");
+        std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        Job::open(&file).err().unwrap_or_else(|| panic!("this scene was opened: {toml}"))
     }
 
     fn path(&self, name: &str) -> PathBuf {

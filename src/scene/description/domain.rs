@@ -21,10 +21,11 @@ pub(super) fn read(value: &Value<'_>) -> Result<DomainDescription, SceneError> {
     Ok(DomainDescription { min, max, sides, bottom, top, reflectance })
 }
 
-const BOX: &str = "write the least and the greatest corner, such as [[-1, -1, -1], [1, 1, 1]]";
+/// What to write for a box.
+pub(super) const BOX: &str = "write the least and the greatest corner, such as [[-1, -1, -1], [1, 1, 1]]";
 
 /// `box = [[..], [..]]`
-fn corners(value: &Value<'_>) -> Result<(DVec3, DVec3), SceneError> {
+pub(super) fn corners(value: &Value<'_>) -> Result<(DVec3, DVec3), SceneError> {
     match value.elements(BOX.trim_start_matches("write "))?.as_slice() {
         [least, greatest] => {
             let (min, max) = (least.point()?, greatest.point()?);

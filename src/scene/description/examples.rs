@@ -10,7 +10,7 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 7] = [
+pub const EXAMPLES: [Example; 8] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
@@ -18,6 +18,7 @@ pub const EXAMPLES: [Example; 7] = [
     Example { name: "automatic camera", text: AUTOMATIC_CAMERA },
     Example { name: "plain numbers", text: PLAIN_NUMBERS },
     Example { name: "phase functions", text: PHASE_FUNCTIONS },
+    Example { name: "turbid", text: TURBID },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -212,4 +213,35 @@ glow = { scattering = 1, phase = { kind = "gaussian", gamma = 10 } }
 ocean = { scattering = 1, phase = { kind = "fournier-forand", ior = 1.1, mu = 3.5835 } }
 coast = { scattering = 1, phase = { kind = "fournier-forand", backscatter = 0.0183 } }
 measured = { scattering = 1, phase = { kind = "tabulated", angle = [0, 10, 90, 180], value = [1e6, 30, 1, 2] } }
+"#;
+
+const TURBID: &str = r#"
+[media.lava]
+ior = 1.6
+absorption = 40
+emission = { blackbody = 1500 }
+
+[media.flame]
+absorption = 2
+emission = [9, 4, 1]
+density = { grid = "plume_####.npy", box = [[-1, -1, 0], [1, 1, 4]] }
+
+[media.river]
+ior = { table = "water", temperature = 15, salinity = 0 }
+absorption = { table = "water" }
+mass_scattering = [400, 420, 440]
+mass_concentration = 0.05
+density = { stratified = -0.5, surface = -1.2 }
+
+[media.soot]
+mass_absorption = { wavelength = [400, 700], value = [9000, 7000] }
+mass_scattering = 1500
+mass_concentration = 1e-4
+
+[media.milk]
+ior = 1.35
+extinction = [80, 90, 100]
+albedo = 0.999
+emission = 0.0
+density = { stratified = 2 }
 "#;

@@ -1,14 +1,13 @@
-//! Reads `[media.NAME]`: refractive index, absorption and scattering.
+//! Reads `[media.NAME]`: refractive index, coefficients, emission, phase function and density.
 
 use std::collections::BTreeMap;
 
 use super::allowed::Allowed;
 use super::error::SceneError;
 use super::nearest::suggestion;
-use super::phase;
-use super::spectrum_value;
 use super::value::Value;
-use super::{AbsorptionDescription, MediumDescription};
+use super::{AbsorptionDescription, DensityDescription, MediumDescription};
+use super::{coefficients, density, phase, spectrum_value};
 use crate::optics::RefractiveIndex;
 use crate::optics::phase::{Isotropic, PhaseFunction};
 use crate::spectrum::Spectrum;
@@ -57,16 +56,36 @@ pub(super) fn existing_medium<T>(
 fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
     let table = value.table("a table such as [media.sea]")?;
     let default = MediumDescription::default();
+    let coefficients = coefficients::read(&table, absorption)?;
+    let emission = table.get("emission");
     let medium = MediumDescription {
         ior: table.get("ior").map_or(Ok(default.ior), |v| ior(&v))?,
-        absorption: table.get("absorption").map(|v| absorption(&v)).transpose()?,
-        scattering: table
-            .get("scattering")
-            .map_or(Ok(default.scattering), |v| spectrum_value::spectrum(&v, &Allowed::NOT_NEGATIVE))?,
+        absorption: coefficients.absorption,
+        scattering: coefficients.scattering,
+        extinction: coefficients.extinction,
+        emission: emission.as_ref().map_or(Ok(default.emission), spectrum_value::radiance)?,
         phase: table.get("phase").map_or(Ok(default.phase), |v| phase::read(&v))?,
+        density: table.get("density").map_or(Ok(default.density), |v| density::read(&v))?,
     };
     table.finish()?;
-    Ok(medium)
+    match emission {
+        Some(value) if !medium.emission.is_zero() && !medium.absorbs() => Err(value.invalid(
+            "a medium emits as it absorbs, and this one absorbs nothing: give it `absorption`, or remove `emission`",
+        )),
+        _ => Ok(medium),
+    }
+}
+
+impl MediumDescription {
+    /// Whether anything is absorbed.
+    fn absorbs(&self) -> bool {
+        match (&self.extinction, &self.absorption) {
+            (Some(given), _) => !given.extinction.is_zero() && given.albedo != Spectrum::Constant(1.0),
+            (None, Some(AbsorptionDescription::Spectrum(spectrum))) => !spectrum.is_zero(),
+            (None, Some(AbsorptionDescription::Water | AbsorptionDescription::Ice)) => true,
+            (None, None) => self.ior.absorption().is_some_and(|implied| !implied.is_zero()),
+        }
+    }
 }
 
 impl Default for MediumDescription {
@@ -76,7 +95,10 @@ impl Default for MediumDescription {
             ior: RefractiveIndex::Constant(1.0),
             absorption: None,
             scattering: Spectrum::Constant(0.0),
+            extinction: None,
+            emission: Spectrum::Constant(0.0),
             phase: PhaseFunction::Isotropic(Isotropic),
+            density: DensityDescription::Homogeneous,
         }
     }
 }

@@ -7,6 +7,8 @@
 
 mod allowed;
 mod camera;
+mod coefficients;
+mod density;
 mod document;
 mod domain;
 mod error;
@@ -162,8 +164,47 @@ pub struct MediumDescription {
     pub absorption: Option<AbsorptionDescription>,
     /// Scattering in 1/m.
     pub scattering: Spectrum,
+    /// What takes the place of absorption and scattering.
+    pub extinction: Option<ExtinctionDescription>,
+    /// Radiance of an endless depth, seen from a medium of index 1 (0).
+    pub emission: Spectrum,
     /// Phase function of the scattering.
     pub phase: PhaseFunction,
+    /// Where the medium is how dense.
+    pub density: DensityDescription,
+}
+
+/// `extinction = ..`, `albedo = ..`
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtinctionDescription {
+    /// Absorption and scattering together, in 1/m.
+    pub extinction: Spectrum,
+    /// The share of scattering in it.
+    pub albedo: Spectrum,
+}
+
+/// `density = ..`, relative: both coefficients are multiplied by it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum DensityDescription {
+    /// 1 everywhere.
+    #[default]
+    Homogeneous,
+    /// exp((height - surface) / depth), heights along `frames.up`.
+    Stratified {
+        /// Distance in metres over which the density falls to 1/e: downwards, or upwards when negative.
+        depth: f64,
+        /// Height at which the density is 1, in metres (0).
+        surface: f64,
+    },
+    /// A file of densities.
+    Grid {
+        /// The file (.npy or .nrrd) or per-frame pattern, relative to the scene file.
+        file: String,
+        /// Least corner of the box that it fills, in metres.
+        min: DVec3,
+        /// Greatest corner, in metres.
+        max: DVec3,
+    },
 }
 
 /// `absorption = ..`
