@@ -12,6 +12,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use super::clusters::{Cluster, clusters};
 use super::collapse::Collapse;
 use super::leaf::{Leaf, LeafIds};
+use super::machine::on_large_pages;
 use super::node::{Child, Node};
 use super::scales::Scale;
 use super::soup::{Soup, bounds_of};
@@ -77,6 +78,13 @@ impl Accel {
             }
             _ => self.hang_scales(soup, &scales, taken),
         }
+        self.settle_memory();
+    }
+
+    /// For large hierarchies: where the arrays stay for the life of a frame.
+    pub(super) fn settle_memory(&self) {
+        on_large_pages(&self.nodes);
+        on_large_pages(&self.leaves);
     }
 
     /// Leaves nothing but what is still.

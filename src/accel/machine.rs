@@ -1,9 +1,9 @@
-//! Eight lanes of numbers, with the instructions of the machine: all `unsafe` code of the crate is in this file.
+//! What the machine offers and the language does not check: wide registers, memory that need not be cleared, large pages.
+//! All `unsafe` code of the crate is in this file.
 //!
 //! Traversal is written once over [`Lanes`] and compiled twice: for any machine, and for those with AVX2 and FMA,
-//! which [`with_best`] recognises at run time. What the lanes compute only decides where to look, never what is hit:
-//! box tests are conservative however they round, and the triangle test of the lanes drops nothing that the scalar
-//! one accepts. So both give the same results to the last bit.
+//! which [`with_best`] recognises at run time. Box tests are conservative however they round; the triangle test does
+//! the same operations in the same order in either, none of them fused. So both give the same results to the last bit.
 #![allow(unsafe_code)]
 
 use std::mem::MaybeUninit;
@@ -231,6 +231,24 @@ impl<const SIZE: usize> Stack<SIZE> {
         }
         self.entries[place].write(last);
         self.len += 1;
+    }
+}
+
+/// Asks the system to put a large array onto pages of 2 MiB, so that rays which jump about in it do not wait for the
+/// translation of addresses. Nothing but time depends on whether it does.
+pub(super) fn on_large_pages<T>(array: &[T]) {
+    #[cfg(target_os = "linux")]
+    {
+        const PAGE: usize = 2 << 20;
+        const WORTH_ASKING: usize = 8 * PAGE;
+        if size_of_val(array) < WORTH_ASKING {
+            return;
+        }
+        let bytes = array.as_ptr().cast::<u8>();
+        let before = bytes.align_offset(PAGE);
+        let whole = size_of_val(array).saturating_sub(before) / PAGE * PAGE;
+        // The range lies within the array, and the call changes no byte of it. Where the system cannot, all stays as it is.
+        unsafe { libc::madvise(bytes.wrapping_add(before).cast_mut().cast(), whole, libc::MADV_COLLAPSE) };
     }
 }
 

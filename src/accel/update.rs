@@ -102,6 +102,7 @@ impl Accel {
         self.ids.clone_from(ids);
         (self.bounds, self.triangles, self.built_cost) = (*bounds, *triangles, *built_cost);
         self.still.clone_from(still);
+        self.settle_memory();
     }
 
     /// Refits with other indices: `new_ids` has the new one of each old one. `triangles` are the new ones, which may

@@ -1,6 +1,6 @@
 //! Dense three-dimensional grids of numbers, as files hold them.
 //!
-//! [`read`] takes NumPy's `.npy` and NRRD's `.nrrd`; the first index (NumPy) or axis (NRRD) is x. Nothing is allocated
+//! [`read()`] takes NumPy's `.npy` and NRRD's `.nrrd`; the first index (NumPy) or axis (NRRD) is x. Nothing is allocated
 //! because a file says so: declared sizes are first compared with the bytes that are there. The values are relative
 //! densities, so each has to be finite and not negative.
 
