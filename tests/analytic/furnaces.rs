@@ -50,6 +50,23 @@ fn a_smooth_glass_sphere_vanishes_in_white_surroundings() {
     }
 }
 
+/// In a dense medium most flights are not traced, since they end within a ball that holds no surface. A flight that left
+/// the fluid unseen would show: it would meet the next surface from the wrong side, or none. The late roulette, from
+/// interaction 1024 on, makes some noise.
+#[test]
+fn walks_through_a_dense_medium_trace_little_and_lose_nothing() {
+    let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 0.8, 4));
+    let scene = folder.scene(&format!(
+        "[media.snow]\nior = 1\nscattering = 40\n[[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"flat\"\n\
+         front = \"air\"\nback = \"snow\"\nmaterial = {{ kind = \"dielectric\" }}\n{CAMERA}"
+    ));
+    let picture = scene.render(64, 0);
+    let counters = picture.counters;
+    assert!(counters.untraced > counters.rays, "{counters:?}");
+    assert_eq!((counters.label_mismatches, counters.escaped_inside), (0, 0));
+    assert_mean("dense", &picture, DVec3::ONE, 1e-3);
+}
+
 /// Each of some hundred scatterings multiplies the throughput by a weight of relative error 2^-24 or so, of either sign:
 /// 1e-5 leaves an order of magnitude.
 #[test]
