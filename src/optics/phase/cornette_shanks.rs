@@ -7,6 +7,7 @@
 //! It is [`Draine`]'s function with alpha = 1.
 
 use super::Lobe;
+use super::angle_table::AngleTable;
 use super::deflection::Deflection;
 use super::draine::Draine;
 
@@ -29,12 +30,8 @@ impl Lobe for CornetteShanks {
         self.draine.value(deflection)
     }
 
-    fn pdf_w(&self, deflection: Deflection) -> f32 {
-        self.draine.pdf_w(deflection)
-    }
-
-    fn weight(&self, deflection: Deflection, pdf_w: f32) -> f32 {
-        self.draine.weight(deflection, pdf_w)
+    fn table(&self) -> Option<&AngleTable> {
+        self.draine.table()
     }
 
     fn sample(&self, u: f32) -> Deflection {

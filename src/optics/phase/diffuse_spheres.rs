@@ -33,12 +33,8 @@ impl Lobe for DiffuseSpheres {
         value(deflection)
     }
 
-    fn pdf_w(&self, deflection: Deflection) -> f32 {
-        self.table.pdf_w(deflection)
-    }
-
-    fn weight(&self, deflection: Deflection, pdf_w: f32) -> f32 {
-        self.value(deflection) / pdf_w
+    fn table(&self) -> Option<&AngleTable> {
+        Some(&self.table)
     }
 
     fn sample(&self, u: f32) -> Deflection {

@@ -42,12 +42,8 @@ impl Lobe for Draine {
         value(self.lobe, self.alpha, deflection)
     }
 
-    fn pdf_w(&self, deflection: Deflection) -> f32 {
-        self.table.pdf_w(deflection)
-    }
-
-    fn weight(&self, deflection: Deflection, pdf_w: f32) -> f32 {
-        self.value(deflection) / pdf_w
+    fn table(&self) -> Option<&AngleTable> {
+        Some(&self.table)
     }
 
     fn sample(&self, u: f32) -> Deflection {

@@ -25,6 +25,7 @@ mod tabulated;
 mod two_term_henyey_greenstein;
 mod two_term_schlick;
 
+use angle_table::AngleTable;
 use glam::Vec3;
 
 pub use atmosphere::Atmosphere;
@@ -107,16 +108,22 @@ trait Lobe {
     /// Mean cosine of the angle; positive is forward.
     fn mean_cosine(&self) -> f32;
 
-    /// Density of [`Lobe::sample`], where it is not the value itself.
+    /// The table that samples come from, where they do not follow the value itself.
     #[inline]
-    fn pdf_w(&self, deflection: Deflection) -> f32 {
-        self.value(deflection)
+    fn table(&self) -> Option<&AngleTable> {
+        None
     }
 
-    /// Value over the density `pdf_w`, where that is not one.
+    /// Density of [`Lobe::sample`].
     #[inline]
-    fn weight(&self, _deflection: Deflection, _pdf_w: f32) -> f32 {
-        1.0
+    fn pdf_w(&self, deflection: Deflection) -> f32 {
+        self.table().map_or_else(|| self.value(deflection), |table| table.pdf_w(deflection))
+    }
+
+    /// Value over the density `pdf_w`.
+    #[inline]
+    fn weight(&self, deflection: Deflection, pdf_w: f32) -> f32 {
+        self.table().map_or(1.0, |_| self.value(deflection) / pdf_w)
     }
 
     /// An angle with its density and its weight.
