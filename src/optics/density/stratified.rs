@@ -130,6 +130,11 @@ mod tests {
             // Where the density has fallen by e^-x the length hardly changes any more: its rounding is worth e^x times more.
             let fallen = (-layers.rate * ray.direction.z * t).max(0.0);
             let tolerance = 4e-6 * (1.0 + libm::expf(fallen) / fallen.max(1.0));
+            // A density beyond e^88 is cut there, since its integral leaves the range of f32: the ray ends no later.
+            if layers.rate * (height - 0.25 + ray.direction.z * t) > 88.0 {
+                prop_assert!(back < t, "{} {}", back, t);
+                return Ok(());
+            }
             prop_assert!(fallen > 10.0 || (back / t - 1.0).abs() < tolerance, "{} {} {}", back, t, length);
         }
 
