@@ -6,6 +6,7 @@
 pub mod ambient_occlusion;
 pub mod counters;
 mod direct;
+mod flight;
 pub mod path;
 mod vertex;
 

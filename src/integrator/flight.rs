@@ -1,0 +1,201 @@
+//! The flight of a path from one event to the next: to a particle of its medium, or to a surface.
+//!
+//! In media that only absorb the transmittance is exact; in media that scatter the free flight is drawn in one lane and
+//! weighted over all (one-sample spectral multiple importance sampling). Where the density changes from place to place,
+//! its integral along the ray stands in for the distance. What a medium emits between one event and the next surface is
+//! added as its expectation, exactly.
+
+use glam::{DVec3, Vec3};
+
+use super::path::{Branch, Sample};
+use crate::accel::{Accel, Hit, Ignored};
+use crate::geometry::Ray;
+use crate::optics::medium::MediumLanes;
+use crate::spectrum::Lanes;
+
+/// Sheets within a rounding error of each other that a path looks through for the one it has jumped over.
+const MOST_SHEETS: u32 = 4;
+
+/// A ball without surfaces around a path in a medium that scatters: while the path stays in it nothing has to be traced.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clearing {
+    centre: Vec3,
+    /// Negative without a ball.
+    radius: f32,
+    /// Collisions since the last surface or ball, and how many there must be before the next is looked for.
+    collisions: u32,
+    patience: u32,
+}
+
+impl Clearing {
+    pub(super) const NONE: Self =
+        Self { centre: Vec3::ZERO, radius: -1.0, collisions: 0, patience: Self::FIRST_PATIENCE };
+    /// Paths that collide a few times only are not worth the search.
+    const FIRST_PATIENCE: u32 = 4;
+    /// A ball of fewer mean free paths is soon left: the next is looked for later.
+    const WORTH_A_SEARCH: f32 = 4.0;
+
+    #[inline]
+    fn holds(&self, point: Vec3) -> bool {
+        self.radius > 0.0 && point.distance_squared(self.centre) < self.radius * self.radius
+    }
+
+    /// The path has collided at a point outside of the ball.
+    #[inline]
+    fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel) {
+        self.radius = -1.0;
+        self.collisions += 1;
+        if self.collisions >= self.patience {
+            self.centre = point;
+            self.radius = accel.clearance(point) - rounding(point, 0.0);
+            self.collisions = 0;
+            let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
+            self.patience = if is_large { Self::FIRST_PATIENCE } else { 2 * self.patience };
+        }
+    }
+}
+
+/// What a flight ends at. The path's throughput is already that of getting there.
+pub(super) enum Event {
+    /// A surface.
+    Surface(Hit),
+    /// A particle of the medium, at this distance.
+    Particle(f32),
+    /// The path meets nothing any more.
+    Nothing,
+}
+
+impl Sample<'_> {
+    /// Draws the next event of a path with the random number `u`.
+    ///
+    /// `VARIED` is for media of varying density and for those that emit.
+    pub(super) fn fly<const SCATTERING: bool, const VARIED: bool>(
+        &mut self,
+        branch: &mut Branch,
+        u: f32,
+    ) -> Event {
+        let medium = self.scratch.media[branch.medium.0 as usize];
+        let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u));
+        let endless = Ray::new(branch.origin, branch.direction);
+        let to_particle = flight.map_or(f32::INFINITY, |f| match VARIED {
+            true => self.frame.medium(branch.medium).density.distance(&endless, f.distance),
+            false => f.distance,
+        });
+        if SCATTERING
+            && !VARIED
+            && let Some(flight) = &flight
+            && branch.clearing.holds(endless.at(to_particle))
+        {
+            self.scratch.counters.untraced += 1;
+            branch.throughput *= medium.scatter_weight(flight);
+            return Event::Particle(to_particle);
+        }
+        let t_max = to_particle + rounding(branch.origin, to_particle);
+        let found = if VARIED {
+            self.nearest_and_glow(branch, &medium, t_max)
+        } else {
+            self.nearest(branch, &Ray { t_max, ..endless })
+        };
+        if found.is_none()
+            && let Some(flight) = &flight
+            && to_particle.is_finite()
+        {
+            let point = endless.at(to_particle);
+            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            branch.throughput *= medium.scatter_weight(flight);
+            return Event::Particle(to_particle);
+        }
+        let length = self.length::<VARIED>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
+        branch.throughput *= match &flight {
+            Some(flight) => medium.pass_weight(flight, length),
+            None => medium.transmittance(length),
+        };
+        let Some(hit) = found else { return Event::Nothing };
+        branch.clearing = Clearing::NONE;
+        Event::Surface(hit)
+    }
+
+    /// The next surface if it is nearer than `t_max`, and what the medium emits on the way to it, however far it is.
+    fn nearest_and_glow(&mut self, branch: &Branch, medium: &MediumLanes, t_max: f32) -> Option<Hit> {
+        let glows =
+            self.frame.needs.emission && self.scratch.sources[branch.medium.0 as usize] != Lanes::ZERO;
+        let reach = if glows { f32::INFINITY } else { t_max };
+        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: reach };
+        let found = self.nearest(branch, &ray);
+        if glows {
+            let length = self.length::<true>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
+            let source = self.scratch.sources[branch.medium.0 as usize];
+            self.radiance += branch.throughput * source * medium.opacity(length);
+        }
+        found.filter(|hit| hit.t <= t_max)
+    }
+
+    /// Metres of density 1 along the path's ray up to a distance.
+    #[inline]
+    fn length<const VARIED: bool>(&self, branch: &Branch, distance: f32) -> f32 {
+        if !VARIED {
+            return distance;
+        }
+        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: distance };
+        self.frame.medium(branch.medium).density.length(&ray)
+    }
+
+    /// The surface that the path meets next.
+    ///
+    /// A ray that leaves an interface starts at the very point, so that it cannot jump over a sheet in the wedge where
+    /// several meet. Rounding may put the point on the wrong side of a neighbour, or the ray on the wrong side of an edge,
+    /// and at the edges of wedges it decides which sheet seems nearest; the labels tell which is meant. One that does
+    /// not belong to the path's medium is looked through where rounding alone may have made it be met, and gives way
+    /// elsewhere to one that does belong and is as far away.
+    fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
+        self.scratch.counters.rays += 1;
+        let (mut from, mut passed) = (*ray, 0.0);
+        let mut ignored = Ignored::one(branch.leaves);
+        let mut found = self.frame.accel.closest(&from, ignored);
+        for _ in 0..MOST_SHEETS {
+            let Some(hit) = found.filter(|hit| !self.frame.is_boundary_of(branch.medium, hit)) else { break };
+            self.scratch.counters.rays += 1;
+            if let Some(other) = self.beside(branch, &from, &hit) {
+                found = Some(other);
+                break;
+            }
+            if !self.is_met_by_rounding(ray, passed + hit.t, &hit) {
+                break;
+            }
+            passed += hit.t;
+            from = Ray { origin: from.at(hit.t), t_max: from.t_max - hit.t, ..from };
+            ignored = Ignored([branch.leaves, hit.triangle]);
+            found = self.frame.accel.closest(&from, ignored);
+        }
+        found.map(|hit| Hit { t: passed + hit.t, ..hit })
+    }
+
+    /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for rounding.
+    fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
+        let slack = 4.0 * rounding(ray.origin, t);
+        // In double precision: the squares of areas leave the range of single precision among lengths that are valid.
+        let v = self.frame.geometry.vertices(hit.triangle).map(|p| p.as_dvec3());
+        let scaled = (v[1] - v[0]).cross(v[2] - v[0]);
+        let doubled_area = scaled.length();
+        // Height over the plane, and distances from the edges, both times twice the area.
+        let height = f64::from(t) * scaled.dot(ray.direction.as_dvec3()).abs();
+        let edges = DVec3::new((v[2] - v[1]).length(), (v[0] - v[2]).length(), (v[1] - v[0]).length());
+        let from_edges = hit.barycentric.as_dvec3() * doubled_area * doubled_area / edges;
+        height.min(from_edges.min_element()) <= f64::from(slack) * doubled_area
+    }
+
+    /// A boundary of the path's medium that is as far away as `found`, which is none.
+    fn beside(&mut self, branch: &Branch, ray: &Ray, found: &Hit) -> Option<Hit> {
+        let t_max = found.t + rounding(ray.origin, found.t);
+        let other =
+            self.frame.accel.closest(&Ray { t_max, ..*ray }, Ignored([branch.leaves, found.triangle]))?;
+        self.frame.is_boundary_of(branch.medium, &other).then_some(other)
+    }
+}
+
+/// How far a point at `distance` from `origin` may be off; where a surface is that near, the path meets it.
+///
+/// Without this slack a particle next to a surface comes to lie beyond it, and its path goes on in the wrong medium.
+fn rounding(origin: Vec3, distance: f32) -> f32 {
+    8.0 * f32::EPSILON * (origin.abs().max_element() + distance)
+}
