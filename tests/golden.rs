@@ -66,7 +66,8 @@ fn radiance_at(scene: &Prepared, x: f32, y: f32) -> Vec3 {
     let mut scratch = Scratch::default();
     let wavelengths = Wavelengths::for_mode(scene.frame.mode, 0.5);
     let stream = SampleStream::new(scene.sampling.seed, 0, 0, 0);
-    let sample = scene.sampling.integrator.sample(&scene.frame, &mut scratch, [x, y], &wavelengths, stream);
+    let sample =
+        scene.sampling.integrator.sample(&scene.frame, &mut scratch, [x, y], &wavelengths, stream, None);
     sample.radiance.truncate()
 }
 

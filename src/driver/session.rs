@@ -10,10 +10,10 @@ use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Sampling, render_pixels};
 use crate::accel::Hierarchy;
 use crate::film::{DEFAULT_CONFIDENCE, Filter, FrameImage, ImageMetadata, estimate_error, write_frame};
-use crate::integrator::{AmbientOcclusion, Integrator, PathTracer};
+use crate::integrator::Integrator;
 use crate::sampling::SampleSeed;
 use crate::scene::assembly::Assembled;
-use crate::scene::description::{IntegratorKind, RenderDescription};
+use crate::scene::description::RenderDescription;
 use crate::sequence::{FrameNumber, output_path};
 use crate::spectrum::LaneMode;
 
@@ -194,12 +194,8 @@ fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescri
 }
 
 fn sampling_of(settings: &RenderDescription) -> Sampling {
-    let path = PathTracer { max_depth: settings.max_depth, split: settings.split };
     Sampling {
-        integrator: match settings.integrator {
-            IntegratorKind::Auto | IntegratorKind::Path => Integrator::Path(path),
-            IntegratorKind::AmbientOcclusion => Integrator::AmbientOcclusion(AmbientOcclusion),
-        },
+        integrator: Integrator::new(settings),
         filter: Filter::new(settings.filter),
         samples: settings.samples,
         seed: SampleSeed { seed: settings.seed, frame: 0 },

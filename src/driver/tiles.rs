@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
-use crate::integrator::{Counters, EyeSample, Integrator, Scratch};
+use crate::integrator::{Counters, EyeSample, Integrator, PhotonMapper, PhotonPass, Scratch};
 use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
 use crate::scene::frame::Frame;
 use crate::spectrum::{Wavelengths, film_rgb};
@@ -37,6 +37,22 @@ pub fn render_pixels(
 ) -> (FrameImage, Counters) {
     let [width, height] = frame.camera.resolution();
     let rects = tiles(width, height, TILE_SIZE);
+    let (tiles, mut counters) = match &sampling.integrator {
+        Integrator::Photon(mapper) => passes(frame, sampling, mapper, &rects, progress),
+        _ => one_after_the_other(frame, sampling, &rects, progress),
+    };
+    let image = FrameImage::from_tiles(width, height, tiles);
+    counters.non_finite = image.rejected();
+    (image, counters)
+}
+
+/// Each tile with all its samples.
+fn one_after_the_other(
+    frame: &Frame,
+    sampling: &Sampling,
+    rects: &[TileRect],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> (Vec<Tile>, Counters) {
     let done = AtomicUsize::new(0);
     let rendered: Vec<(Tile, Counters)> = rects
         .par_iter()
@@ -52,28 +68,72 @@ pub fn render_pixels(
         counters += events;
         tile
     });
-    let image = FrameImage::from_tiles(width, height, tiles);
-    counters.non_finite = image.rejected();
-    (image, counters)
+    (tiles.collect(), counters)
+}
+
+/// All tiles with one sample a pixel, each time with other photons; the sums of all pixels are kept in between.
+fn passes(
+    frame: &Frame,
+    sampling: &Sampling,
+    mapper: &PhotonMapper,
+    rects: &[TileRect],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> (Vec<Tile>, Counters) {
+    let of_all = mapper.prepare(frame, sampling.seed);
+    let mut sums: Vec<Vec<PixelAccumulator>> =
+        rects.iter().map(|rect| vec![PixelAccumulator::new(); rect.area()]).collect();
+    let mut counters = Counters::default();
+    let (done, total) = (AtomicUsize::new(0), rects.len().saturating_mul(sampling.samples as usize));
+    for index in 0..sampling.samples {
+        let (photons, events) = of_all.pass(frame, index);
+        counters += events;
+        let tiles = sums.par_iter_mut().zip(rects).map_init(Scratch::default, |scratch, (sums, rect)| {
+            scratch.counters = Counters::default();
+            for (sum, (x, y)) in sums.iter_mut().zip(rect.pixels()) {
+                add_sample(frame, sampling, scratch, sum, [x, y], index, Some(&photons));
+            }
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            scratch.counters
+        });
+        tiles.collect::<Vec<Counters>>().into_iter().for_each(|events| counters += events);
+    }
+    let tile = |(sums, rect): (&Vec<PixelAccumulator>, &TileRect)| Tile {
+        rect: *rect,
+        pixels: sums.iter().map(PixelAccumulator::finish).collect(),
+    };
+    (sums.iter().zip(rects).map(tile).collect(), counters)
 }
 
 fn render_tile(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, rect: TileRect) -> Tile {
-    let pixels = rect.pixels().map(|(x, y)| render_pixel(frame, sampling, scratch, x, y)).collect();
+    let pixels = rect.pixels().map(|(x, y)| render_pixel(frame, sampling, scratch, [x, y])).collect();
     Tile { rect, pixels }
 }
 
-fn render_pixel(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, x: u32, y: u32) -> Pixel {
+fn render_pixel(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, at: [u32; 2]) -> Pixel {
     let mut pixel = PixelAccumulator::new();
     for index in 0..sampling.samples {
-        let mut stream = SampleStream::new(sampling.seed, x, y, index);
-        let [u, v, w, _] = stream.next4();
-        let offset = sampling.filter.sample([u, v]);
-        let wavelengths = Wavelengths::for_mode(frame.mode, w);
-        let point = [x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y];
-        let sample = sampling.integrator.sample(frame, scratch, point, &wavelengths, stream);
-        pixel.add((index % REPLICATES) as usize, &film_sample(frame, &sample, &wavelengths));
+        add_sample(frame, sampling, scratch, &mut pixel, at, index, None);
     }
     pixel.finish()
+}
+
+/// Adds sample `index` of a pixel; `photons` are those of its pass, whose wavelengths it takes.
+fn add_sample(
+    frame: &Frame,
+    sampling: &Sampling,
+    scratch: &mut Scratch,
+    pixel: &mut PixelAccumulator,
+    [x, y]: [u32; 2],
+    index: u32,
+    photons: Option<&PhotonPass>,
+) {
+    let mut stream = SampleStream::new(sampling.seed, x, y, index);
+    let [u, v, w, _] = stream.next4();
+    let offset = sampling.filter.sample([u, v]);
+    let wavelengths = photons.map_or_else(|| Wavelengths::for_mode(frame.mode, w), |pass| pass.wavelengths);
+    let point = [x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y];
+    let sample = sampling.integrator.sample(frame, scratch, point, &wavelengths, stream, photons);
+    pixel.add((index % REPLICATES) as usize, &film_sample(frame, &sample, &wavelengths));
 }
 
 fn film_sample(frame: &Frame, sample: &EyeSample, wavelengths: &Wavelengths) -> FilmSample {

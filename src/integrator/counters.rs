@@ -11,6 +11,8 @@ pub struct Counters {
     pub rays: u64,
     /// Flights between two collisions that needed no ray, since no surface is near.
     pub untraced: u64,
+    /// Photons emitted.
+    pub photons: u64,
     /// Rays traced towards lights.
     pub shadow_rays: u64,
     /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
@@ -44,6 +46,7 @@ impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
         self.untraced += other.untraced;
+        self.photons += other.photons;
         self.shadow_rays += other.shadow_rays;
         self.label_mismatches += other.label_mismatches;
         self.non_finite += other.non_finite;

@@ -75,7 +75,8 @@ impl Sample<'_> {
         u: f32,
     ) -> Event {
         let medium = self.scratch.media[branch.medium.0 as usize];
-        let flight = (SCATTERING && medium.scatters).then(|| medium.free_flight(branch.throughput, u));
+        let turns = SCATTERING && medium.scatters && branch.scatterings_left > 0;
+        let flight = turns.then(|| medium.free_flight(branch.throughput, u));
         let endless = Ray::new(branch.origin, branch.direction);
         let to_particle = flight.map_or(f32::INFINITY, |f| match VARIED {
             true => self.frame.medium(branch.medium).density.distance(&endless, f.distance),
@@ -119,13 +120,19 @@ impl Sample<'_> {
     fn nearest_and_glow(&mut self, branch: &Branch, medium: &MediumLanes, t_max: f32) -> Option<Hit> {
         let glows =
             self.frame.needs.emission && self.scratch.sources[branch.medium.0 as usize] != Lanes::ZERO;
-        let reach = if glows { f32::INFINITY } else { t_max };
+        let photons = self.photons.filter(|_| medium.scatters && branch.lookups_left > 0);
+        let reach = if glows || photons.is_some() { f32::INFINITY } else { t_max };
         let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: reach };
         let found = self.nearest(branch, &ray);
         if glows {
             let length = self.length::<true>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
             let source = self.scratch.sources[branch.medium.0 as usize];
             self.radiance += branch.throughput * source * medium.opacity(length);
+        }
+        if let Some(pass) = photons {
+            let way = Ray { t_max: found.map_or(f32::INFINITY, |hit| hit.t), ..ray };
+            self.radiance +=
+                branch.throughput * self.scattered_in(pass, branch, &way, found.map(|hit| hit.triangle));
         }
         found.filter(|hit| hit.t <= t_max)
     }

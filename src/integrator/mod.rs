@@ -5,9 +5,12 @@
 
 pub mod ambient_occlusion;
 pub mod counters;
+mod diffuse;
 mod direct;
 mod flight;
+mod interface;
 pub mod path;
+pub mod photon;
 mod vertex;
 
 use glam::Vec3;
@@ -15,10 +18,12 @@ use glam::Vec3;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use counters::Counters;
 pub use path::PathTracer;
+pub use photon::{PhotonMapper, PhotonPass};
 
 use crate::accel::Hit;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
+use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
 use crate::spectrum::{Lanes, Wavelengths};
 
@@ -80,12 +85,26 @@ impl Scratch {
 pub enum Integrator {
     /// Volumetric path tracing.
     Path(PathTracer),
+    /// Progressive photon mapping.
+    Photon(PhotonMapper),
     /// The open part of the hemisphere over the first surface.
     AmbientOcclusion(AmbientOcclusion),
 }
 
 impl Integrator {
+    /// What the scene asks for.
+    pub fn new(settings: &RenderDescription) -> Self {
+        let path = PathTracer { max_depth: settings.max_depth, split: settings.split };
+        match settings.integrator {
+            IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path),
+            IntegratorKind::Photon => Self::Photon(PhotonMapper { path, settings: settings.photons }),
+            IntegratorKind::AmbientOcclusion => Self::AmbientOcclusion(AmbientOcclusion),
+        }
+    }
+
     /// The radiance through the point (x, y) of the picture, in pixels from the upper left corner.
+    ///
+    /// `photons` are those of the pass; without them photon mapping finds what path tracing does.
     pub fn sample(
         &self,
         frame: &Frame,
@@ -93,10 +112,12 @@ impl Integrator {
         point: [f32; 2],
         wavelengths: &Wavelengths,
         stream: SampleStream,
+        photons: Option<&PhotonPass>,
     ) -> EyeSample {
         let ray = frame.camera.ray(point[0], point[1]);
         match self {
-            Self::Path(tracer) => tracer.trace(frame, scratch, &ray, wavelengths, stream),
+            Self::Path(tracer) => tracer.trace(frame, scratch, &ray, wavelengths, stream, None),
+            Self::Photon(mapper) => mapper.path.trace(frame, scratch, &ray, wavelengths, stream, photons),
             Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, &ray, stream),
         }
     }
@@ -105,6 +126,7 @@ impl Integrator {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Path(_) => "path",
+            Self::Photon(_) => "photon",
             Self::AmbientOcclusion(_) => "ambient-occlusion",
         }
     }

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::flight::{Clearing, Event};
+use super::photon::PhotonPass;
 use super::{EyeSample, FirstHit, Scratch};
 use crate::geometry::Ray;
 use crate::optics::medium::MediumId;
@@ -52,6 +53,10 @@ pub struct Branch {
     /// Interactions and index-matched boundaries.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
+    /// Particles at which it may still turn; beyond them media only attenuate.
+    pub(super) scatterings_left: u32,
+    /// Vertices at which it still asks for photons.
+    pub(super) lookups_left: u8,
     pub(super) arrival: Arrival,
     pub(super) clearing: Clearing,
     pub(super) stream: SampleStream,
@@ -64,6 +69,13 @@ pub(super) struct Arrival {
     pub(super) specular_from_eye: bool,
     /// The last vertex that was lit by next-event estimation, if the way from there was straight.
     pub(super) lit: Option<LitVertex>,
+}
+
+impl Arrival {
+    /// True where light that photons carry is not theirs: straight from a vertex that was lit, or seen by the eye.
+    pub(super) fn counts_lights(&self) -> bool {
+        self.specular_from_eye || self.lit.is_some()
+    }
 }
 
 /// A vertex at which next-event estimation looked for the lights.
@@ -88,12 +100,14 @@ pub(super) struct Sample<'a> {
     pub(super) wavelengths: &'a Wavelengths,
     /// Interactions along a path at most.
     pub(super) max_depth: u32,
+    /// The photons of the pass, where there are any.
+    pub(super) photons: Option<&'a PhotonPass>,
     pub(super) radiance: Lanes,
     pub(super) first: Option<FirstHit>,
 }
 
 impl PathTracer {
-    /// Radiance along an eye ray.
+    /// Radiance along an eye ray, with the light of photons where there are any.
     pub(super) fn trace(
         &self,
         frame: &Frame,
@@ -101,28 +115,22 @@ impl PathTracer {
         ray: &Ray,
         wavelengths: &Wavelengths,
         stream: SampleStream,
+        photons: Option<&PhotonPass>,
     ) -> EyeSample {
         scratch.start(frame, wavelengths);
         scratch.branches.push(Branch {
-            origin: ray.origin,
-            direction: ray.direction,
-            leaves: u32::MAX,
             medium: frame.camera_medium,
             throughput: frame.mode.white(),
-            index_factor: 1.0,
-            share: 1.0,
-            interactions: 0,
-            steps: 0,
             splits_left: self.split,
-            arrival: Arrival { specular_from_eye: true, lit: None },
-            clearing: Clearing::NONE,
-            stream,
+            scatterings_left: if photons.is_none_or(|pass| pass.walks) { u32::MAX } else { 0 },
+            lookups_left: photons.map_or(0, |pass| pass.lookups),
+            ..Branch::new(ray.origin, ray.direction, stream)
         });
-        let max_depth = if self.max_depth == 0 { u32::MAX } else { self.max_depth };
+        let max_depth = self.interactions();
         let mut sample =
-            Sample { frame, scratch, wavelengths, max_depth, radiance: Lanes::ZERO, first: None };
+            Sample { frame, scratch, wavelengths, max_depth, photons, radiance: Lanes::ZERO, first: None };
         // Light transport is compiled five times over what the scene needs in its inner loop.
-        let varied = frame.needs.heterogeneous || frame.needs.emission;
+        let varied = frame.needs.heterogeneous || frame.needs.emission || photons.is_some();
         match (varied, frame.needs.scattering, frame.needs.direct_light) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
@@ -131,6 +139,11 @@ impl PathTracer {
             (true, ..) => self.follow_all::<true, true, true>(&mut sample),
         }
         EyeSample { radiance: sample.radiance, first: sample.first }
+    }
+
+    /// Interactions along a path at most.
+    pub(super) fn interactions(&self) -> u32 {
+        if self.max_depth == 0 { u32::MAX } else { self.max_depth }
     }
 
     fn follow_all<const SCATTERING: bool, const DIRECT: bool, const VARIED: bool>(
@@ -188,7 +201,9 @@ impl Sample<'_> {
         }
         let phase = &self.frame.medium(branch.medium).phase;
         let forward = branch.direction;
-        let lit = DIRECT && self.frame.looks_for_lights(branch.medium);
+        // Photons carry the light of all sources that are sampled, once it is scattered.
+        let lit = DIRECT && self.photons.is_none() && self.frame.looks_for_lights(branch.medium);
+        branch.lookups_left = 0;
         if lit {
             let receiver =
                 Receiver { position: point, normal: None, medium: branch.medium, leaves: u32::MAX };
@@ -222,7 +237,10 @@ impl Sample<'_> {
             .arrival
             .lit
             .map_or(1.0, |v| crate::light::balance(v.pdf_w, lights.environment.pdf_w(branch.direction)));
-        let mut radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
+        let mut radiance = Lanes::ZERO;
+        if self.photons.is_none_or(|pass| !pass.sky || branch.arrival.counts_lights()) {
+            radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
+        }
         if let Some(sun) = &lights.sun
             && branch.arrival.specular_from_eye
         {
@@ -247,7 +265,7 @@ impl Sample<'_> {
         spent
     }
 
-    fn cut(&mut self, branch: &Branch) -> Fate {
+    pub(super) fn cut(&mut self, branch: &Branch) -> Fate {
         let kept = branch.throughput.max_element() / (branch.index_factor * branch.share);
         if branch.arrival.specular_from_eye && kept > 0.999 {
             self.scratch.counters.trapped += 1;
@@ -259,6 +277,27 @@ impl Sample<'_> {
 }
 
 impl Branch {
+    /// A path that begins in the open air, without photons and splits.
+    pub(super) fn new(origin: Vec3, direction: Vec3, stream: SampleStream) -> Self {
+        Self {
+            origin,
+            direction,
+            leaves: u32::MAX,
+            medium: MediumId(0),
+            throughput: Lanes::ONE,
+            index_factor: 1.0,
+            share: 1.0,
+            interactions: 0,
+            steps: 0,
+            splits_left: 0,
+            scatterings_left: u32::MAX,
+            lookups_left: 0,
+            arrival: Arrival { specular_from_eye: true, lit: None },
+            clearing: Clearing::NONE,
+            stream,
+        }
+    }
+
     /// Counts an interaction and plays Russian roulette with `u`.
     pub(super) fn interacted(&mut self, u: f32) -> Fate {
         self.interactions += 1;

@@ -2,24 +2,18 @@
 
 use glam::Vec3;
 
+use super::diffuse::DiffuseLobe;
 use super::direct::Receiver;
+use super::interface;
 use super::path::{Arrival, Branch, Fate, LitVertex, Sample};
-use crate::geometry::Frame as Basis;
+use super::photon::{self, Guide, PhotonPass};
 use crate::light::balance;
 use crate::optics::fresnel;
 use crate::optics::medium::MediumId;
-use crate::optics::refraction::{reflect, refract};
-use crate::sampling::warp;
+use crate::optics::refraction::reflect;
 use crate::scene::geometry::SurfaceHit;
 use crate::scene::surface::{MediumPair, Surface};
 use crate::spectrum::{LaneCurve, Lanes};
-
-/// Reflected and refracted directions at an interface; no refraction is total reflection.
-struct Directions {
-    reflectance: f32,
-    reflected: Vec3,
-    refracted: Option<Vec3>,
-}
 
 impl Sample<'_> {
     /// Follows a branch through the surface that it has met.
@@ -30,13 +24,14 @@ impl Sample<'_> {
         u: [f32; 4],
     ) -> Fate {
         let frame = self.frame;
+        let is_done = self.photons.is_some_and(|pass| !pass.walks) && branch.has_asked_everywhere();
         match frame.surface(hit.triangle) {
             Surface::Interface(pair) if pair.matched => self.pass(branch, hit, pair),
             Surface::Emitter { radiance } => {
                 self.arrive(branch, hit, radiance);
                 Fate::Ends
             }
-            _ if self.is_spent(branch) => Fate::Ends,
+            _ if is_done || self.is_spent(branch) => Fate::Ends,
             Surface::Interface(pair) => self.bend(branch, hit, pair, u),
             Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
@@ -58,7 +53,7 @@ impl Sample<'_> {
         self.check_label(branch, pair, hit);
         self.remember_first(branch, hit, Lanes::ONE);
         let eta_t_over_i = self.frame.medium(beyond).n / self.frame.medium(incident).n;
-        let ways = directions(-branch.direction, hit, eta_t_over_i);
+        let ways = interface::ways(-branch.direction, hit.ns, hit.ng, eta_t_over_i);
         branch.medium = incident;
         branch.arrival.lit = None;
         let factor = self.index_factor(incident, beyond);
@@ -93,7 +88,16 @@ impl Sample<'_> {
     ) -> Fate {
         let albedo = reflectance.lanes(self.wavelengths);
         self.remember_first(branch, hit, albedo);
-        let lit = DIRECT && self.frame.looks_for_lights(branch.medium);
+        let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
+        let guide = self.photons.and_then(|pass| self.take_photons(pass, branch, hit, albedo));
+        let pdf_w = |wi: Vec3| match &guide {
+            None => lobe.pdf_w(wi),
+            Some(guide) => lobe.weighted_pdf_w(wi, |direction| guide.relative(direction)),
+        };
+        // With photons, a vertex beyond the last at which they were asked for has all its light from them.
+        let asks = self.photons.is_none_or(|_| branch.lookups_left > 0);
+        branch.lookups_left = branch.lookups_left.saturating_sub(1);
+        let lit = DIRECT && asks && self.frame.looks_for_lights(branch.medium);
         if lit {
             let receiver = Receiver {
                 position: hit.point.position,
@@ -101,27 +105,43 @@ impl Sample<'_> {
                 medium: branch.medium,
                 leaves: hit.triangle,
             };
-            let response = |wi: Vec3| {
-                let pdf_w = warp::cosine_hemisphere_pdf_w(wi.dot(hit.ns));
-                (albedo * pdf_w, pdf_w)
-            };
+            let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
             let direct = self.direct(&receiver, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let local = warp::cosine_hemisphere([u[1], u[2]]);
-        let mut wi = Basis::around(hit.ns).to_world(local).normalize();
-        let mut vertex =
-            Some(LitVertex { position: hit.point.position, pdf_w: warp::cosine_hemisphere_pdf_w(local.z) });
-        if wi.dot(hit.ng) <= 0.0 {
-            // The part of the lobe that dips under the surface goes around the geometric normal instead; it is found
-            // by chance only, so next-event estimation has no share in it.
-            wi = Basis::around(hit.ng).to_world(local).normalize();
-            vertex = None;
-        }
-        branch.throughput *= albedo;
-        branch.arrival = Arrival { specular_from_eye: false, lit: vertex.filter(|_| lit) };
+        let wi = match &guide {
+            None => lobe.sample([u[1], u[2]]),
+            Some(guide) => lobe.above(guide.sample([u[1], u[2]])),
+        };
+        let own = pdf_w(wi);
+        branch.throughput *= if guide.is_some() { albedo * (lobe.pdf_w(wi) / own) } else { albedo };
+        let vertex = LitVertex { position: hit.point.position, pdf_w: own };
+        let lit = lit || asks && self.photons.is_some();
+        branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
         branch.leave(hit, wi);
         branch.interacted(u[3])
+    }
+
+    /// Adds the light of photons at a diffuse surface where the path asks for them; tells how the directions of final
+    /// gathering are drawn, where that begins here.
+    fn take_photons(
+        &mut self,
+        pass: &PhotonPass,
+        branch: &Branch,
+        hit: &SurfaceHit,
+        albedo: Lanes,
+    ) -> Option<Guide> {
+        if branch.lookups_left == 0 {
+            return None;
+        }
+        let mut reflected = photon::reflected(pass, &pass.caustic, pass.radii.caustic, hit);
+        let is_last = branch.lookups_left == 1;
+        if is_last {
+            reflected += photon::reflected(pass, &pass.global, pass.radii.global, hit);
+        }
+        self.radiance += branch.throughput * albedo * reflected;
+        (pass.guide && !is_last && !pass.global.is_empty())
+            .then(|| Guide::new(&pass.global, pass.radii.global, hit))
     }
 
     fn reflect_on_metal(
@@ -152,7 +172,8 @@ impl Sample<'_> {
     /// The path runs into a light.
     fn arrive(&mut self, branch: &Branch, hit: &SurfaceHit, radiance: &LaneCurve) {
         self.remember_first(branch, hit, Lanes::ONE);
-        if !hit.from_front {
+        let is_for_photons = self.photons.is_some() && !branch.arrival.counts_lights();
+        if !hit.from_front || is_for_photons {
             return;
         }
         let weight = match (branch.arrival.lit, &self.frame.lights.area) {
@@ -165,7 +186,7 @@ impl Sample<'_> {
         self.radiance += branch.throughput * radiance.lanes(self.wavelengths) * weight;
     }
 
-    fn check_label(&mut self, branch: &Branch, pair: &MediumPair, hit: &SurfaceHit) {
+    pub(super) fn check_label(&mut self, branch: &Branch, pair: &MediumPair, hit: &SurfaceHit) {
         if pair.crossed(hit.from_front).0 != branch.medium {
             self.scratch.counters.label_mismatches += 1;
         }
@@ -181,23 +202,28 @@ impl Sample<'_> {
 impl Branch {
     /// Starts again from an interface along `direction`, at the very point: [`Sample::nearest`] tells by the labels which
     /// sheets rounding has put on the wrong side of it.
-    fn go_on(&mut self, hit: &SurfaceHit, direction: Vec3) {
+    pub(super) fn go_on(&mut self, hit: &SurfaceHit, direction: Vec3) {
         self.origin = hit.point.position;
         self.direction = direction;
         self.leaves = hit.triangle;
     }
 
     /// Starts again from an opaque surface along `direction`.
-    fn leave(&mut self, hit: &SurfaceHit, direction: Vec3) {
+    pub(super) fn leave(&mut self, hit: &SurfaceHit, direction: Vec3) {
         self.origin = hit.point.spawn(hit.ng, direction);
         self.direction = direction;
         self.leaves = hit.triangle;
     }
 
-    fn enter(&mut self, medium: MediumId, index_factor: f32) {
+    pub(super) fn enter(&mut self, medium: MediumId, index_factor: f32) {
         self.medium = medium;
         self.throughput *= index_factor;
         self.index_factor *= index_factor;
+    }
+
+    /// True when no vertex is left at which it asks for photons.
+    fn has_asked_everywhere(&self) -> bool {
+        self.lookups_left == 0
     }
 
     /// Takes a share of the path with numbers of its own.
@@ -207,16 +233,4 @@ impl Branch {
         self.splits_left -= 1;
         self.stream = self.stream.fork(branch);
     }
-}
-
-/// Both directions about the shading normal; about the geometric one when either would end up on the wrong side.
-fn directions(wo: Vec3, hit: &SurfaceHit, eta_t_over_i: f32) -> Directions {
-    let about = |normal: Vec3| Directions {
-        reflectance: fresnel::dielectric(wo.dot(normal), eta_t_over_i).reflectance,
-        reflected: reflect(wo, normal),
-        refracted: refract(wo, normal, eta_t_over_i),
-    };
-    let ways = about(hit.ns);
-    let sound = ways.reflected.dot(hit.ng) > 0.0 && ways.refracted.is_none_or(|d| d.dot(hit.ng) < 0.0);
-    if sound { ways } else { about(hit.ng) }
 }

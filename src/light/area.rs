@@ -3,9 +3,10 @@
 use glam::Vec3;
 
 use super::LightSample;
+use crate::geometry::offset::SurfacePoint;
 use crate::geometry::triangle::scaled_normal;
 use crate::sampling::{Distribution1d, warp};
-use crate::spectrum::{LaneCurve, Wavelengths};
+use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
 
 /// All emitting triangles of a scene.
 #[derive(Clone, Debug)]
@@ -37,6 +38,23 @@ pub struct EmitterTriangle {
     pub radiance: LaneCurve,
     /// How bright it counts when one is chosen, relative to the others.
     pub importance: f32,
+}
+
+/// A point on a light.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterPoint {
+    /// Where a ray may start that leaves it, in metres from the scene's origin.
+    pub position: Vec3,
+    /// Unit normal on the bright side.
+    pub normal: Vec3,
+    /// Its triangle's place among the lights.
+    pub entry: usize,
+    /// Its triangle's index in the scene.
+    pub triangle: u32,
+    /// Emitted radiance.
+    pub radiance: Lanes,
+    /// Density of the point per area.
+    pub pdf_a: f32,
 }
 
 impl AreaLights {
@@ -80,6 +98,26 @@ impl AreaLights {
             radiance: emitter.radiance.lanes(wavelengths),
             pdf_w,
         })
+    }
+
+    /// A point from which a photon starts, the triangle by the third number.
+    pub fn sample_point(&self, u: [f32; 3], wavelengths: &Wavelengths) -> EmitterPoint {
+        let (entry, _) = self.choice.sample(u[2]);
+        let emitter = &self.triangles[entry];
+        let point = SurfacePoint::on_triangle(&emitter.vertices, warp::triangle([u[0], u[1]]));
+        EmitterPoint {
+            position: point.spawn(emitter.normal, emitter.normal),
+            normal: emitter.normal,
+            entry,
+            triangle: emitter.id,
+            radiance: emitter.radiance.lanes(wavelengths),
+            pdf_a: emitter.pdf_a,
+        }
+    }
+
+    /// Centroid and bright side of each emitting triangle, in the order of [`EmitterPoint::entry`].
+    pub fn centroids(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
+        self.triangles.iter().map(|t| ((t.vertices[0] + t.vertices[1] + t.vertices[2]) / 3.0, t.normal))
     }
 
     /// Density per solid angle with which triangle `id`, seen at `distance` along `wi`, would have been sampled.

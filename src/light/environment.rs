@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use super::{LightSample, Picture};
 use crate::geometry::elementary::{atan2, sin_cos};
-use crate::sampling::Distribution2d;
+use crate::sampling::{Distribution2d, warp};
 use crate::spectrum::light_primaries::radiance_lanes;
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths};
 
@@ -67,6 +67,14 @@ impl Environment {
         let wi = (x * (sin * cos_phi) + y * (sin * sin_phi) + z * cos).normalize();
         let pdf_w = solid_angle_density(density, sin)?;
         let radiance = self.radiance(wi, wavelengths);
+        Some(LightSample { wi, distance: f32::INFINITY, triangle: None, radiance, pdf_w })
+    }
+
+    /// A direction from which light arrives, for photons: as [`Environment::sample`], and evenly from a constant sky.
+    pub fn emit(&self, u: [f32; 2], wavelengths: &Wavelengths) -> Option<LightSample> {
+        let Self::Constant(radiance) = self else { return self.sample(u, wavelengths) };
+        let radiance = radiance.lanes(wavelengths);
+        let (wi, pdf_w) = (warp::sphere(u), 0.25 * FRAC_1_PI);
         Some(LightSample { wi, distance: f32::INFINITY, triangle: None, radiance, pdf_w })
     }
 

@@ -48,6 +48,13 @@ impl SampleStream {
         Self { key, index: sample / REPLICATES, set: 0 }
     }
 
+    /// The stream of photon `photon` of pass `pass`; the photons of one pass are stratified among each other.
+    pub fn of_photon(seed: SampleSeed, pass: u32, photon: u32) -> Self {
+        // No pixel lies in that column.
+        let key = hash_pair(Self::new(seed, u32::MAX, pass, 0).key, 0x9d1e_57a3);
+        Self { key, index: photon, set: 0 }
+    }
+
     /// The next four numbers in [0, 1).
     #[inline]
     pub fn next4(&mut self) -> [f32; 4] {

@@ -69,6 +69,15 @@ impl Frame {
         }
     }
 
+    /// The medium at a point ([`medium_at`]).
+    pub fn medium_at(&self, point: Vec3) -> MediumId {
+        let pair_of = |triangle: u32| match self.surface(triangle) {
+            Surface::Interface(pair) => Some(*pair),
+            _ => None,
+        };
+        medium_at(point, &self.accel, pair_of, MediumId(0))
+    }
+
     /// What a triangle is.
     #[inline]
     pub fn surface(&self, triangle: u32) -> &Surface {

@@ -59,20 +59,35 @@ impl Geometry {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
+    /// How much later than at its own line a ray's parallels meet the plane of a triangle, in metres for each metre beside
+    /// the line: t(offset) = t - slope . offset. Its length is the tangent of the angle with the normal.
+    pub fn slope(&self, triangle: u32, direction: Vec3) -> Vec3 {
+        let n = unit_normal(&self.vertices(triangle));
+        let cos = n.dot(direction);
+        let beside = n - cos * direction;
+        beside / if cos.abs() < 1e-6 { 1e-6_f32.copysign(cos) } else { cos }
+    }
+
+    /// The interpolated normal on the side that a hit is seen from, whatever that says of it; `ng`, the triangle's
+    /// normal on that side, without shading normals.
+    pub fn interpolated_normal(&self, hit: &Hit, ng: Vec3) -> Vec3 {
+        let corners = self.corners[hit.triangle as usize];
+        if corners == Self::FLAT {
+            return ng;
+        }
+        let side = if hit.from_front { 1.0 } else { -1.0 };
+        let [a, b, c] = corners.map(|i| self.normals[i as usize]);
+        let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
+        mixed.normalize_or(ng * side) * side
+    }
+
     /// Point and normals at a hit of a ray with unit `direction`.
     pub fn surface_hit(&self, hit: &Hit, direction: Vec3) -> SurfaceHit {
         let v = self.vertices(hit.triangle);
         let side = if hit.from_front { 1.0 } else { -1.0 };
         let ng = unit_normal(&v) * side;
-        let corners = self.corners[hit.triangle as usize];
-        let ns = if corners == Self::FLAT {
-            ng
-        } else {
-            let [a, b, c] = corners.map(|i| self.normals[i as usize]);
-            let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
-            let ns = mixed.normalize_or(ng * side) * side;
-            if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng }
-        };
+        let ns = self.interpolated_normal(hit, ng);
+        let ns = if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng };
         SurfaceHit {
             triangle: hit.triangle,
             t: hit.t,

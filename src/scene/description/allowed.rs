@@ -16,6 +16,10 @@ impl Allowed {
     pub const POSITIVE: Self = Self::open(0.0, f64::INFINITY, "a number above 0");
     /// 0 or above.
     pub const NOT_NEGATIVE: Self = Self::closed(0.0, f64::MAX, "a number that is not below 0");
+    /// A length in metres.
+    pub const LENGTH: Self = Self::closed(1e-9, 1e9, "a length from 1e-9 to 1e9 metres");
+    /// alpha of progressive photon mapping.
+    pub const SHRINKAGE: Self = Self::closed(0.01, 1.0, "a number from 0.01 to 1");
     /// A reflectance.
     pub const UNIT: Self = Self::closed(0.0, 1.0, "a number from 0 to 1");
     /// A mean cosine.

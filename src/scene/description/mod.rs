@@ -338,6 +338,41 @@ pub struct RenderDescription {
     pub seed: u64,
     /// Pixel filter (box).
     pub filter: FilterKind,
+    /// Photons of the photon integrator.
+    pub photons: PhotonDescription,
+}
+
+/// `render.photons`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonDescription {
+    /// Photons emitted in each pass; 0 is as many as there are pixels, from 10,000 to 1,000,000 (0).
+    pub count: u32,
+    /// First radius on surfaces in metres; `None` finds it from the photons.
+    pub radius: Option<f32>,
+    /// First radius around rays in media in metres; `None` finds it from the photons.
+    pub volume_radius: Option<f32>,
+    /// alpha of the shrinking radii, in (0, 1]; 1 keeps them (2/3).
+    pub shrink: f32,
+    /// How flux is spread (epanechnikov).
+    pub kernel: KernelKind,
+    /// Photons are asked for at the second diffuse surface of an eye path instead of the first (true).
+    pub final_gather: bool,
+    /// The directions of photons draw those of final gathering (true).
+    pub guide: bool,
+    /// A constant sky emits photons too (false).
+    pub sky: bool,
+}
+
+/// `render.photons.kernel`
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum KernelKind {
+    /// The same within the radius.
+    Constant,
+    /// Falls linearly to the rim.
+    Cone,
+    /// Falls with the square of the distance: the least error for a given radius.
+    #[default]
+    Epanechnikov,
 }
 
 /// `render.integrator`
@@ -348,6 +383,8 @@ pub enum IntegratorKind {
     Auto,
     /// Volumetric path tracing.
     Path,
+    /// Progressive photon mapping.
+    Photon,
     /// The open part of the hemisphere over what the camera sees.
     AmbientOcclusion,
 }

@@ -1,8 +1,9 @@
 //! Reads `[render]`.
 
+use super::allowed::Allowed;
 use super::error::SceneError;
 use super::value::Value;
-use super::{FilterKind, IntegratorKind, RenderDescription};
+use super::{FilterKind, IntegratorKind, KernelKind, PhotonDescription, RenderDescription};
 
 impl Default for RenderDescription {
     fn default() -> Self {
@@ -13,13 +14,30 @@ impl Default for RenderDescription {
             split: 1,
             seed: 0,
             filter: FilterKind::Box,
+            photons: PhotonDescription::default(),
         }
     }
 }
 
-const INTEGRATORS: [(&str, IntegratorKind); 3] = [
+impl Default for PhotonDescription {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            radius: None,
+            volume_radius: None,
+            shrink: 2.0 / 3.0,
+            kernel: KernelKind::default(),
+            final_gather: true,
+            guide: true,
+            sky: false,
+        }
+    }
+}
+
+const INTEGRATORS: [(&str, IntegratorKind); 4] = [
     ("auto", IntegratorKind::Auto),
     ("path", IntegratorKind::Path),
+    ("photon", IntegratorKind::Photon),
     ("ambient-occlusion", IntegratorKind::AmbientOcclusion),
 ];
 
@@ -28,6 +46,15 @@ const FILTERS: [(&str, FilterKind); 3] = [
     ("gaussian", FilterKind::Gaussian),
     ("blackman-harris", FilterKind::BlackmanHarris),
 ];
+
+const KERNELS: [(&str, KernelKind); 3] = [
+    ("constant", KernelKind::Constant),
+    ("cone", KernelKind::Cone),
+    ("epanechnikov", KernelKind::Epanechnikov),
+];
+
+/// Most photons in a pass: a map of them takes some 10 GB.
+const MOST_PHOTONS: i128 = 100_000_000;
 
 /// Most interface hits at which both branches are followed: the paths double at each.
 const MOST_SPLITS: i128 = 16;
@@ -46,7 +73,29 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
         split: whole("split", 0, MOST_SPLITS, default.split)?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
         filter: table.get("filter").map_or(Ok(default.filter), |v| v.choice(&FILTERS))?,
+        photons: table.get("photons").map_or(Ok(default.photons), |v| photons(&v))?,
     };
     table.finish()?;
     Ok(render)
+}
+
+/// Reads `render.photons`.
+fn photons(value: &Value<'_>) -> Result<PhotonDescription, SceneError> {
+    let table = value.table("a table such as { count = 100000, final_gather = true }")?;
+    let default = PhotonDescription::default();
+    let length = |key| table.get(key).map(|v| v.number(&Allowed::LENGTH)).transpose();
+    let flag = |key, default| table.get(key).map_or(Ok(default), |v| v.boolean());
+    let photons = PhotonDescription {
+        count: table.get("count").map_or(Ok(default.count), |v| v.integer(0, MOST_PHOTONS))?,
+        radius: length("radius")?.map(|r| r as f32),
+        volume_radius: length("volume_radius")?.map(|r| r as f32),
+        shrink: table.get("shrink").map_or(Ok(default.shrink.into()), |v| v.number(&Allowed::SHRINKAGE))?
+            as f32,
+        kernel: table.get("kernel").map_or(Ok(default.kernel), |v| v.choice(&KERNELS))?,
+        final_gather: flag("final_gather", default.final_gather)?,
+        guide: flag("guide", default.guide)?,
+        sky: flag("sky", default.sky)?,
+    };
+    table.finish()?;
+    Ok(photons)
 }

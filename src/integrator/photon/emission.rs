@@ -1,0 +1,272 @@
+//! Where photons start.
+//!
+//! ```text
+//! flux = L cos / (n pdf_a pdf_w)       over n photons of one kind of light
+//! ```
+//! * The sun and the sky: a direction from the light's own density, and a point on a disc perpendicular to it that covers
+//!   the scene. Where the scene reaches much farther than what the eye sees, points lie log-uniformly around that, so that
+//!   each octave of distance gets as many.
+//! * Emitting triangles: a point by power, and a direction in the cone around the sphere of all that does not emit; by the
+//!   cosine where the point is inside of it, or where the open air scatters.
+//!
+//! Kinds that are there get equal numbers: photons 0, k, 2k, .. of k kinds are the first's.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use crate::accel::Ignored;
+use crate::geometry::elementary::{exp, ln};
+use crate::geometry::{Bounds, Frame as Basis, Ray};
+use crate::light::LightSample;
+use crate::optics::medium::MediumId;
+use crate::sampling::{SampleStream, warp};
+use crate::scene::frame::Frame;
+use crate::scene::surface::Surface;
+use crate::spectrum::{Lanes, Wavelengths};
+
+/// A sphere.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    centre: Vec3,
+    radius: f32,
+}
+
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Sun,
+    Sky,
+    Area,
+}
+
+/// How a frame's lights emit.
+#[derive(Clone, Debug)]
+pub(super) struct Emission {
+    kinds: Vec<Kind>,
+    /// Around everything that does not emit.
+    scene: Ball,
+    /// Around what the eye sees.
+    seen: Ball,
+    /// The medium before each emitting triangle, by its entry among the lights.
+    starts: Vec<MediumId>,
+}
+
+/// The start of a photon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Emitted {
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
+    /// The triangle that it leaves.
+    pub(super) leaves: u32,
+    pub(super) medium: MediumId,
+    pub(super) flux: Lanes,
+}
+
+/// The scene reaches much farther than what is seen from this ratio of their radii on.
+const FAR: f32 = 4.0;
+
+impl Emission {
+    /// `sky` says whether the sky is among the lights that emit photons.
+    pub(super) fn new(frame: &Frame, sky: bool) -> Self {
+        let lights = &frame.lights;
+        let kinds = [
+            lights.sun.as_ref().map(|_| Kind::Sun),
+            sky.then_some(Kind::Sky),
+            lights.area.as_ref().map(|_| Kind::Area),
+        ];
+        let scene = scene_ball(frame);
+        let starts = lights.area.as_ref().map_or_else(Vec::new, |area| {
+            area.centroids().map(|(point, normal)| medium_before(frame, point, normal)).collect()
+        });
+        Self { kinds: kinds.into_iter().flatten().collect(), scene, seen: seen_ball(frame, scene), starts }
+    }
+
+    /// Radius of what the eye sees, in metres.
+    pub(super) fn seen_radius(&self) -> f32 {
+        self.seen.radius.min(self.scene.radius)
+    }
+
+    /// True when some light emits photons.
+    pub(super) fn is_possible(&self) -> bool {
+        !self.kinds.is_empty() && self.scene.radius > 0.0
+    }
+
+    /// Photon `index` of `count`; `None` where none arrives.
+    pub(super) fn emit(
+        &self,
+        frame: &Frame,
+        wavelengths: &Wavelengths,
+        (index, count): (u32, u32),
+        stream: &mut SampleStream,
+    ) -> Option<Emitted> {
+        let kinds = self.kinds.len() as u32;
+        let kind = self.kinds[(index % kinds) as usize];
+        // Photons index % kinds, + kinds, .. below count.
+        let of_kind = (count - index % kinds).div_ceil(kinds) as f32;
+        let u = stream.next4();
+        let mut emitted = match kind {
+            Kind::Sun => {
+                let light = frame.lights.sun.as_ref()?.sample([u[0], u[1]], wavelengths);
+                self.start_at_infinity(frame, &light, [u[2], u[3]], wavelengths)
+            }
+            Kind::Sky => {
+                let light = frame.lights.environment.emit([u[0], u[1]], wavelengths)?;
+                self.start_at_infinity(frame, &light, [u[2], u[3]], wavelengths)
+            }
+            Kind::Area => self.start_on_triangle(frame, u, stream.next4()[0], wavelengths),
+        }?;
+        emitted.flux /= of_kind;
+        (emitted.flux.max_element() > 0.0).then_some(emitted)
+    }
+
+    fn start_at_infinity(
+        &self,
+        frame: &Frame,
+        light: &LightSample,
+        u: [f32; 2],
+        wavelengths: &Wavelengths,
+    ) -> Option<Emitted> {
+        let basis = Basis::around(light.wi);
+        let (offset, pdf_a, near) = if self.scene.radius > FAR * self.seen.radius {
+            let (offset, pdf_a) = log_uniform_disc(u, self.seen.radius, 2.0 * self.scene.radius);
+            (offset, pdf_a, self.seen)
+        } else {
+            let disc = warp::disc(u) * self.scene.radius;
+            (disc.extend(0.0), 1.0 / (PI * self.scene.radius * self.scene.radius), self.scene)
+        };
+        let mut origin = near.centre + basis.to_world(offset) + light.wi * near.radius;
+        if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
+            // What is seen does not reach out of the scene there: start beyond all of it, with coarser coordinates.
+            origin += light.wi * 2.0 * self.scene.radius;
+        }
+        let open_air = &frame.media[0];
+        let back = Ray::new(origin, light.wi);
+        let arrives = open_air.lanes(wavelengths).transmittance(open_air.density.length(&back));
+        let flux = light.radiance * arrives / (light.pdf_w * pdf_a);
+        let emitted = Emitted { origin, direction: -light.wi, leaves: u32::MAX, medium: MediumId(0), flux };
+        self.is_in_the_open(frame, &emitted).then_some(emitted)
+    }
+
+    /// False for light from below a sea without end, which there is not.
+    fn is_in_the_open(&self, frame: &Frame, emitted: &Emitted) -> bool {
+        if !frame.endless.contains(&true) {
+            return true;
+        }
+        let first = frame.accel.closest(&Ray::new(emitted.origin, emitted.direction), Ignored::NOTHING);
+        first.is_some_and(|hit| frame.is_boundary_of(MediumId(0), &hit))
+    }
+
+    fn start_on_triangle(
+        &self,
+        frame: &Frame,
+        u: [f32; 4],
+        choice: f32,
+        wavelengths: &Wavelengths,
+    ) -> Option<Emitted> {
+        let point = frame.lights.area.as_ref()?.sample_point([u[0], u[1], choice], wavelengths);
+        let towards = self.scene.centre - point.position;
+        let distance = towards.length();
+        let sine = self.scene.radius / distance;
+        let is_aimed = sine < 0.999 && frame.media[0].sigma_s.is_zero();
+        let (direction, pdf_w) = if is_aimed {
+            let one_minus_cos = sine * sine / (1.0 + (1.0 - sine * sine).sqrt());
+            let local = warp::cone([u[2], u[3]], one_minus_cos);
+            (Basis::around(towards / distance).to_world(local).normalize(), warp::cone_pdf_w(one_minus_cos))
+        } else {
+            let local = warp::cosine_hemisphere([u[2], u[3]]);
+            (Basis::around(point.normal).to_world(local).normalize(), warp::cosine_hemisphere_pdf_w(local.z))
+        };
+        let cos = direction.dot(point.normal);
+        if cos <= 0.0 || pdf_w <= 0.0 {
+            return None;
+        }
+        Some(Emitted {
+            origin: point.position,
+            direction,
+            leaves: point.triangle,
+            medium: self.starts[point.entry],
+            flux: point.radiance * (cos / (point.pdf_a * pdf_w)),
+        })
+    }
+}
+
+/// A point on a disc of radius `greatest` with density 1 / (pi ln(1 + R^2 / r^2) (rho^2 + r^2)).
+fn log_uniform_disc(u: [f32; 2], inner: f32, greatest: f32) -> (Vec3, f32) {
+    let ratio = greatest / inner;
+    let log = ln(1.0 + ratio * ratio);
+    let squared = inner * inner * (exp(u[0] * log) - 1.0);
+    let (sin, cos) = crate::geometry::elementary::sin_cos(2.0 * PI * u[1]);
+    let rho = squared.sqrt();
+    (Vec3::new(rho * cos, rho * sin, 0.0), 1.0 / (PI * log * (squared + inner * inner)))
+}
+
+/// The ball around everything that does not emit; of radius 0 when there is nothing.
+fn scene_ball(frame: &Frame) -> Ball {
+    let geometry = &frame.geometry;
+    let corners = (0..geometry.triangles.len() as u32)
+        .filter(|&id| !matches!(frame.surface(id), Surface::Emitter { .. }))
+        .flat_map(|id| geometry.vertices(id));
+    let bounds = Bounds::of_points(corners.clone());
+    let centre = bounds.centre();
+    let squared = corners.map(|p| p.distance_squared(centre)).fold(0.0, f32::max);
+    // Rounding must leave no corner outside.
+    Ball { centre, radius: squared.sqrt() * 1.000_01 }
+}
+
+/// The ball around what the middle of the eye's rays meet: their median point, and twice the median distance from it.
+fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
+    const RAYS: u32 = 16;
+    let [width, height] = frame.camera.resolution().map(|n| n as f32 / RAYS as f32);
+    let mut seen: Vec<Vec3> = Vec::new();
+    for i in 0..RAYS * RAYS {
+        let (x, y) = ((i % RAYS) as f32 + 0.5, (i / RAYS) as f32 + 0.5);
+        let ray = frame.camera.ray(x * width, y * height);
+        seen.extend(frame.accel.closest(&ray, Ignored::NOTHING).map(|hit| ray.at(hit.t)));
+    }
+    if seen.is_empty() {
+        return scene;
+    }
+    let median = |mut values: Vec<f32>| {
+        values.sort_unstable_by(f32::total_cmp);
+        values[values.len() / 2]
+    };
+    let centre = Vec3::from_array([0, 1, 2].map(|axis| median(seen.iter().map(|p| p[axis]).collect())));
+    let radius = 2.0 * median(seen.iter().map(|p| p.distance(centre)).collect());
+    if radius > 0.0 { Ball { centre, radius } } else { scene }
+}
+
+/// The medium on the bright side of an emitting triangle.
+fn medium_before(frame: &Frame, point: Vec3, normal: Vec3) -> MediumId {
+    if frame.media.len() == 1 {
+        return MediumId(0);
+    }
+    // A little in front of it, so that an interface that it touches is seen from the bright side.
+    let size = point.abs().max_element();
+    frame.medium_at(point + normal * (size * 4.0 * f32::EPSILON))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Integrals over the disc, estimated with the samples: the area, and a Gaussian as wide as the inner radius.
+    #[test]
+    fn the_log_uniform_disc_has_the_density_that_it_states() {
+        let (inner, greatest, n) = (0.5_f32, 80.0_f32, 512);
+        let (mut area, mut gaussian) = (0.0_f64, 0.0_f64);
+        for i in 0..n * n {
+            let u = [((i % n) as f32 + 0.5) / n as f32, ((i / n) as f32 + 0.5) / n as f32];
+            let (point, pdf_a) = log_uniform_disc(u, inner, greatest);
+            assert!(point.length() <= greatest * 1.000_01);
+            area += 1.0 / f64::from(pdf_a);
+            gaussian += f64::from((-point.length_squared() / (inner * inner)).exp() / pdf_a);
+        }
+        let n = f64::from(n * n);
+        let expected = std::f64::consts::PI * f64::from(greatest * greatest);
+        // The midpoint rule on 512 strata that each span 2 % of the squared radius.
+        assert!((area / n / expected - 1.0).abs() < 1e-3, "{}", area / n / expected);
+        let expected = std::f64::consts::PI * f64::from(inner * inner);
+        assert!((gaussian / n / expected - 1.0).abs() < 1e-3, "{}", gaussian / n / expected);
+    }
+}

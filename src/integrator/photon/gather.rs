@@ -1,0 +1,86 @@
+//! Density estimation: the radiance that photons stand for, on a surface and along a ray.
+//!
+//! ```text
+//! surface:  L = (albedo / pi) sum_p flux_p k(d_p / r) / (pi r^2)                              [JENSEN96 eq. 6]
+//! ray:      L = sum_p p(omega_p -> eye) T(t_p) flux_p k(d_p / r) / (pi r^2)                   [JAROSZ08 eq. 17]
+//! ```
+//! On a surface d is the distance to the photon, along a ray it is that of the photon to the ray, at distance t. A
+//! photon counts only in the medium and on the side of the surface where it has arrived.
+
+use std::f32::consts::{FRAC_1_PI, PI};
+
+use glam::Vec3;
+
+use super::PhotonPass;
+use super::kernel::profile;
+use super::map::PhotonMap;
+use crate::geometry::Ray;
+use crate::integrator::path::{Branch, Sample};
+use crate::optics::phase::Deflection;
+use crate::scene::geometry::SurfaceHit;
+use crate::spectrum::Lanes;
+
+/// Photons on a surface that is turned farther away than this cosine belong to another part of it.
+const SAME_SIDE: f32 = 0.5;
+
+/// Radiance that a surface of albedo 1 reflects of the photons of a map.
+pub(in crate::integrator) fn reflected(
+    pass: &PhotonPass,
+    map: &PhotonMap,
+    radius: f32,
+    hit: &SurfaceHit,
+) -> Lanes {
+    if map.is_empty() {
+        return Lanes::ZERO;
+    }
+    let inverse = 1.0 / (radius * radius);
+    let mut sum = Lanes::ZERO;
+    map.each_in_ball(hit.point.position, radius, |photon, squared| {
+        if photon.normal.dot(hit.ng) > SAME_SIDE {
+            sum += photon.flux * profile(pass.kernel, squared * inverse);
+        }
+    });
+    sum * (FRAC_1_PI * FRAC_1_PI * inverse)
+}
+
+impl Sample<'_> {
+    /// Radiance that arrives at the start of a ray from photons scattered into it; `end` is the triangle that it ends on.
+    ///
+    /// Where a ray begins or ends at a surface that it meets obliquely, photons beside its line may lie before the one or
+    /// behind the other and yet in the medium. No other ray takes the part of their flux that the kernel spreads beyond
+    /// the surface: it belongs to the end of this one. Light comes to the eye from where a photon is, so its way through
+    /// the medium begins at the plane of the surface before it, not at that of the ray's start.
+    pub(in crate::integrator) fn scattered_in(
+        &self,
+        pass: &PhotonPass,
+        branch: &Branch,
+        ray: &Ray,
+        end: Option<u32>,
+    ) -> Lanes {
+        if pass.volume.is_empty() {
+            return Lanes::ZERO;
+        }
+        let medium = self.scratch.media[branch.medium.0 as usize];
+        let described = self.frame.medium(branch.medium);
+        let radius = pass.radii.volume;
+        let inverse = 1.0 / (radius * radius);
+        let geometry = &self.frame.geometry;
+        let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
+        let slopes = [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction)));
+        let beyond = slopes.map(|slope| slope.map_or(0.0, |slope| radius * slope.length()));
+        let before = slopes[0].unwrap_or(Vec3::ZERO);
+        let mut sum = Lanes::ZERO;
+        pass.volume.each_around_ray(ray, radius, beyond, |photon, along, squared| {
+            if photon.medium != branch.medium {
+                return;
+            }
+            let beside = photon.position - ray.at(along);
+            let t_max = (along + before.dot(beside)).clamp(0.0, ray.t_max);
+            let length = described.density.length(&Ray { t_max, ..*ray });
+            let towards_eye = Deflection::between(photon.direction, -ray.direction);
+            let value = described.phase.value(towards_eye) * profile(pass.kernel, squared * inverse);
+            sum += photon.flux * medium.transmittance(length) * value;
+        });
+        sum * (inverse / PI)
+    }
+}

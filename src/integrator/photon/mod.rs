@@ -1,0 +1,208 @@
+//! Progressive photon mapping: light that eye paths do not find.
+//!
+//! Each sample of every pixel is a pass with photons of its own. Light is parted by its source and by its way, so that
+//! nothing counts twice and nothing is lost:
+//!
+//! | light | found by |
+//! |---|---|
+//! | of photon lights (sun, emitters, pictures of the sky): seen through specular surfaces only | eye paths |
+//! | straight onto a diffuse surface | next-event estimation |
+//! | turned by specular surfaces, then onto a diffuse surface | caustic photons |
+//! | scattered before, onto the first diffuse surface of an eye path | final gathering, or global photons |
+//! | ... onto the second one | global photons |
+//! | scattered in a medium | photons around the eye's rays, up to the last vertex at which photons are asked |
+//! | of a constant sky, and of media that emit | eye paths alone, which go on as in path tracing |
+//!
+//! A constant sky is left to eye paths since chance is right there; `sky = true` makes photons of it too.
+
+pub(super) mod emission;
+pub(super) mod gather;
+pub(super) mod guide;
+pub(super) mod kernel;
+pub mod map;
+pub mod radius;
+pub(super) mod trace;
+
+pub use map::{Photon, PhotonMap};
+pub use radius::Radii;
+
+pub(super) use gather::reflected;
+pub(super) use guide::Guide;
+
+use emission::Emission;
+use trace::{Arrivals, Tracing};
+
+use super::Counters;
+use super::path::PathTracer;
+use crate::light::Environment;
+use crate::sampling::{SampleSeed, SampleStream};
+use crate::scene::description::{KernelKind, PhotonDescription};
+use crate::scene::frame::Frame;
+use crate::spectrum::Wavelengths;
+
+/// Progressive photon mapping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonMapper {
+    /// How eye paths are followed.
+    pub path: PathTracer,
+    /// How photons are.
+    pub settings: PhotonDescription,
+}
+
+/// What all passes of a frame share.
+#[derive(Clone, Debug)]
+pub struct PhotonFrame {
+    mapper: PhotonMapper,
+    seed: SampleSeed,
+    /// `None` where nothing emits photons or nothing takes them.
+    emission: Option<Emission>,
+    count: u32,
+    volume_share: f32,
+    radii: Radii,
+    lookups: u8,
+    walks: bool,
+    sky: bool,
+}
+
+/// The photons of one pass.
+#[derive(Clone, Debug)]
+pub struct PhotonPass {
+    /// The wavelengths of all photons and eye paths of the pass.
+    pub wavelengths: Wavelengths,
+    pub(super) caustic: PhotonMap,
+    pub(super) global: PhotonMap,
+    pub(super) volume: PhotonMap,
+    pub(super) radii: Radii,
+    pub(super) kernel: KernelKind,
+    pub(super) guide: bool,
+    /// Vertices at which an eye path asks for photons.
+    pub(super) lookups: u8,
+    /// Eye paths go on for light that photons do not carry.
+    pub(super) walks: bool,
+    /// The sky is among the lights that photons carry.
+    pub(super) sky: bool,
+}
+
+/// Photons that tell how many arrive in media, and photons that tell the radii, at most.
+const FIRST_PILOT: u32 = 512;
+const PILOT: u32 = 65_536;
+/// Photons kept in media for each that is emitted, about.
+const KEPT_IN_MEDIA: f32 = 4.0;
+/// Names the numbers of photons apart from those of pixels.
+const PHOTON_COLUMN: u32 = u32::MAX;
+
+impl PhotonMapper {
+    /// Finds out how photons are emitted in a frame and how wide they are spread.
+    pub fn prepare(&self, frame: &Frame, seed: SampleSeed) -> PhotonFrame {
+        let [width, height] = frame.camera.resolution();
+        let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
+        let count = if self.settings.count == 0 { pixels } else { self.settings.count };
+        let sky = Self::sky_emits(frame, self.settings.sky);
+        let takes = frame.needs.diffuse || frame.needs.scattering;
+        let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());
+        let path_sky = matches!(&frame.lights.environment, Environment::Constant(c) if !c.is_zero()) && !sky;
+        let mut prepared = PhotonFrame {
+            mapper: *self,
+            seed,
+            walks: emission.is_none() || path_sky || frame.needs.emission,
+            lookups: match (&emission, self.settings.final_gather) {
+                (None, _) => 0,
+                (_, false) => 1,
+                (_, true) => 2,
+            },
+            sky: sky && emission.is_some(),
+            emission,
+            count,
+            volume_share: 1.0,
+            radii: Radii { caustic: 0.0, global: 0.0, volume: 0.0 },
+        };
+        prepared.run_pilots(frame);
+        prepared
+    }
+
+    /// True when the sky emits photons: a picture, or a constant one that is asked to.
+    pub fn sky_emits(frame: &Frame, constant_too: bool) -> bool {
+        match &frame.lights.environment {
+            Environment::Constant(radiance) => constant_too && !radiance.is_zero(),
+            Environment::Image(_) => frame.lights.environment.is_sampled(),
+        }
+    }
+}
+
+impl PhotonFrame {
+    /// Emits the photons of pass `index` and puts them into maps.
+    pub fn pass(&self, frame: &Frame, index: u32) -> (PhotonPass, Counters) {
+        let (wavelengths, stream) = self.numbers(frame, index);
+        let arrivals = self.trace(frame, &wavelengths, self.count, &stream);
+        let settings = &self.mapper.settings;
+        let pass = PhotonPass {
+            wavelengths,
+            caustic: PhotonMap::new(&arrivals.caustic),
+            global: PhotonMap::new(&arrivals.global),
+            volume: PhotonMap::new(&arrivals.volume),
+            radii: self.radii.shrunk(index, settings.shrink.into()),
+            kernel: settings.kernel,
+            guide: settings.guide,
+            lookups: self.lookups,
+            walks: self.walks,
+            sky: self.sky,
+        };
+        (pass, arrivals.counters)
+    }
+
+    /// The first radii in metres.
+    pub fn radii(&self) -> Radii {
+        self.radii
+    }
+
+    /// Photons a pass; 0 where none are needed.
+    pub fn count(&self) -> u32 {
+        if self.emission.is_some() { self.count } else { 0 }
+    }
+
+    fn numbers(
+        &self,
+        frame: &Frame,
+        pass: u32,
+    ) -> (Wavelengths, impl Fn(u32) -> SampleStream + Sync + use<>) {
+        let seed = self.seed;
+        let u = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4()[0];
+        (Wavelengths::for_mode(frame.mode, u), move |photon| SampleStream::of_photon(seed, pass, photon))
+    }
+
+    fn trace(
+        &self,
+        frame: &Frame,
+        wavelengths: &Wavelengths,
+        count: u32,
+        stream: &(impl Fn(u32) -> SampleStream + Sync),
+    ) -> Arrivals {
+        let Some(emission) = &self.emission else { return Arrivals::default() };
+        let max_depth = self.mapper.path.interactions();
+        Tracing { frame, emission, wavelengths, count, max_depth, volume_share: self.volume_share }
+            .run(stream)
+    }
+
+    /// A few photons tell how many of the many collisions in media are worth keeping, and some more the radii.
+    fn run_pilots(&mut self, frame: &Frame) {
+        let (wavelengths, stream) = self.numbers(frame, 0);
+        let first = self.trace(frame, &wavelengths, FIRST_PILOT, &stream);
+        let in_media = first.volume.len() as f32 / FIRST_PILOT as f32;
+        self.volume_share = (KEPT_IN_MEDIA / in_media).min(1.0);
+        let count = self.count.min(PILOT);
+        let pilot = self.trace(frame, &wavelengths, count, &stream);
+        // Photons of one pilot stand for so many photons of a pass.
+        let share = count as f32 / self.count as f32;
+        let natural = |photons: &[Photon]| radius::natural(&PhotonMap::new(photons), share);
+        let settings = &self.mapper.settings;
+        let widest = 0.1 * self.emission.as_ref().map_or(1.0, Emission::seen_radius);
+        let or_widest = |given: Option<f32>, found: Option<f32>| {
+            given.or(found).unwrap_or(widest).min(given.unwrap_or(widest))
+        };
+        self.radii = Radii {
+            caustic: or_widest(settings.radius, natural(&pilot.caustic)),
+            global: or_widest(settings.radius, natural(&pilot.global)),
+            volume: or_widest(settings.volume_radius, natural(&pilot.volume)),
+        };
+    }
+}

@@ -1,0 +1,339 @@
+//! Follows photons from the lights through the scene and leaves them where they arrive.
+//!
+//! A photon carries flux, which boundaries do not scale by the square of the index as they do radiance. It takes one
+//! of its ways at each interface in proportion to their shares, and Russian roulette ends it as it ends eye paths.
+//! What travels straight from a light to a surface is left to next-event estimation; in media every photon counts.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::emission::{Emission, Emitted};
+use super::map::Photon;
+use crate::accel::Hit;
+use crate::geometry::Frame as Basis;
+use crate::integrator::diffuse::DiffuseLobe;
+use crate::integrator::flight::Event;
+use crate::integrator::interface::photon_ways;
+use crate::integrator::path::{Arrival, Branch, Fate, HARD_LIMIT, Sample};
+use crate::integrator::{Counters, Scratch};
+use crate::optics::fresnel;
+use crate::optics::refraction::reflect;
+use crate::sampling::{SampleStream, warp};
+use crate::scene::frame::Frame;
+use crate::scene::geometry::SurfaceHit;
+use crate::scene::surface::{MediumPair, Surface};
+use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
+
+/// Photons that one worker follows at a time.
+const BATCH: u32 = 1024;
+
+/// What a photon has met since its light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum History {
+    /// Nothing that turned it.
+    Straight,
+    /// Specular surfaces only.
+    Specular,
+    /// Something else.
+    Scattered,
+}
+
+/// The photons of one pass.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Arrivals {
+    /// On surfaces, turned by specular surfaces only.
+    pub(super) caustic: Vec<Photon>,
+    /// On surfaces, after scattering.
+    pub(super) global: Vec<Photon>,
+    /// In media.
+    pub(super) volume: Vec<Photon>,
+    pub(super) counters: Counters,
+}
+
+/// What the photons of a pass have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tracing<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) emission: &'a Emission,
+    pub(super) wavelengths: &'a Wavelengths,
+    /// Photons emitted.
+    pub(super) count: u32,
+    pub(super) max_depth: u32,
+    /// The part of the photons in media that are kept, each for so many more.
+    pub(super) volume_share: f32,
+}
+
+impl Tracing<'_> {
+    /// Emits and follows all photons; `stream` gives the numbers of each by its index.
+    pub(super) fn run(&self, stream: impl Fn(u32) -> SampleStream + Sync) -> Arrivals {
+        let batches: Vec<Arrivals> = (0..self.count.div_ceil(BATCH))
+            .into_par_iter()
+            .map_init(Scratch::default, |scratch, batch| {
+                scratch.counters = Counters::default();
+                scratch.start(self.frame, self.wavelengths);
+                let range = batch * BATCH..((batch + 1) * BATCH).min(self.count);
+                let mut walk =
+                    Walk { sample: self.sample(scratch), arrivals: Arrivals::default(), tracing: *self };
+                for index in range {
+                    let mut stream = stream(index);
+                    let count = (index, self.count);
+                    if let Some(start) = self.emission.emit(self.frame, self.wavelengths, count, &mut stream)
+                    {
+                        walk.follow(&start, stream);
+                    }
+                }
+                let Walk { sample, mut arrivals, .. } = walk;
+                arrivals.counters = sample.scratch.counters;
+                arrivals
+            })
+            .collect();
+        let mut all = Arrivals::default();
+        for batch in batches {
+            all.caustic.extend(batch.caustic);
+            all.global.extend(batch.global);
+            all.volume.extend(batch.volume);
+            all.counters += batch.counters;
+        }
+        all.counters.photons += u64::from(self.count);
+        all
+    }
+
+    fn sample<'s>(&'s self, scratch: &'s mut Scratch) -> Sample<'s> {
+        Sample {
+            frame: self.frame,
+            scratch,
+            wavelengths: self.wavelengths,
+            max_depth: self.max_depth,
+            photons: None,
+            radiance: Lanes::ZERO,
+            first: None,
+        }
+    }
+}
+
+struct Walk<'a> {
+    sample: Sample<'a>,
+    arrivals: Arrivals,
+    tracing: Tracing<'a>,
+}
+
+/// A photon on its way; the branch's throughput is the flux over `scale`.
+struct Flying {
+    branch: Branch,
+    scale: f32,
+    history: History,
+}
+
+impl Walk<'_> {
+    fn follow(&mut self, start: &Emitted, stream: SampleStream) {
+        // Roulette and the choice of lanes look at the throughput: its greatest lane begins at 1.
+        let scale = start.flux.max_element();
+        let mut flying = Flying {
+            branch: Branch {
+                medium: start.medium,
+                throughput: start.flux / scale,
+                leaves: start.leaves,
+                ..Branch::new(start.origin, start.direction, stream)
+            },
+            scale,
+            history: History::Straight,
+        };
+        while self.advance(&mut flying) == Fate::GoesOn {}
+    }
+
+    fn advance(&mut self, flying: &mut Flying) -> Fate {
+        let branch = &mut flying.branch;
+        if branch.steps >= HARD_LIMIT {
+            return self.sample.cut(branch);
+        }
+        branch.steps += 1;
+        let u = branch.stream.next4();
+        let event = if self.tracing.frame.needs.heterogeneous {
+            self.sample.fly::<true, true>(branch, u[0])
+        } else {
+            self.sample.fly::<true, false>(branch, u[0])
+        };
+        if flying.branch.throughput.max_element() <= 0.0 {
+            return Fate::Ends;
+        }
+        match event {
+            Event::Surface(hit) => self.meet(flying, &hit, u),
+            Event::Particle(distance) => self.scatter(flying, distance, u),
+            Event::Nothing => Fate::Ends,
+        }
+    }
+
+    fn meet(&mut self, flying: &mut Flying, found: &Hit, u: [f32; 4]) -> Fate {
+        let frame = self.tracing.frame;
+        let hit = frame.geometry.surface_hit(found, flying.branch.direction);
+        match frame.surface(hit.triangle) {
+            Surface::Emitter { .. } => Fate::Ends,
+            Surface::Interface(pair) if pair.matched => {
+                let (incident, beyond) = pair.crossed(hit.from_front);
+                self.sample.check_label(&flying.branch, pair, &hit);
+                // Where indices differ all the same, L / n^2 holds: its adjoint is the inverse of an eye path's factor.
+                flying.branch.enter(beyond, self.sample.index_factor(beyond, incident));
+                flying.branch.go_on(&hit, flying.branch.direction);
+                Fate::GoesOn
+            }
+            Surface::Interface(pair) => self.bend(flying, found, &hit, pair, u),
+            Surface::Diffuse { reflectance } => self.arrive(flying, &hit, reflectance, u),
+            Surface::Conductor { eta, k } => self.reflect_on_metal(flying, found, &hit, [eta, k], u),
+        }
+    }
+
+    /// A refracting interface: one of the ways, by its share.
+    fn bend(
+        &mut self,
+        flying: &mut Flying,
+        found: &Hit,
+        hit: &SurfaceHit,
+        pair: &MediumPair,
+        u: [f32; 4],
+    ) -> Fate {
+        let branch = &mut flying.branch;
+        if self.sample.is_spent(branch) {
+            return Fate::Ends;
+        }
+        let (incident, beyond) = pair.crossed(hit.from_front);
+        self.sample.check_label(branch, pair, hit);
+        let frame = self.tracing.frame;
+        let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
+        let ns = frame.geometry.interpolated_normal(found, hit.ng);
+        let ways = photon_ways(-branch.direction, ns, hit.ng, eta_t_over_i);
+        let total: f32 = ways.iter().map(|way| way.share).sum();
+        if total <= 0.0 {
+            return Fate::Ends;
+        }
+        let mut rest = u[1] * total;
+        let chosen = ways.iter().find(|way| {
+            let is_it = rest < way.share;
+            rest -= way.share;
+            is_it
+        });
+        // Rounding may run past the last way.
+        let Some(way) = chosen.or_else(|| ways.iter().rev().find(|way| way.share > 0.0)) else {
+            return Fate::Ends;
+        };
+        branch.medium = if way.crosses { beyond } else { incident };
+        branch.throughput *= total;
+        branch.go_on(hit, way.direction);
+        flying.turned_by_mirror();
+        flying.branch.interacted(u[3])
+    }
+
+    fn reflect_on_metal(
+        &mut self,
+        flying: &mut Flying,
+        found: &Hit,
+        hit: &SurfaceHit,
+        index: [&LaneCurve; 2],
+        u: [f32; 4],
+    ) -> Fate {
+        let branch = &mut flying.branch;
+        if self.sample.is_spent(branch) {
+            return Fate::Ends;
+        }
+        let frame = self.tracing.frame;
+        let wi = -branch.direction;
+        let n = frame.medium(branch.medium).n;
+        let [eta, k] = index.map(|curve| curve.lanes(self.tracing.wavelengths) / n);
+        // A mirror direction about a normal is its own reverse: the eye path from it must take the same normal.
+        let ns = frame.geometry.interpolated_normal(found, hit.ng);
+        let (about_ns, about_ng) = (reflect(wi, ns), reflect(wi, hit.ng));
+        let is_shaded =
+            |wo: Vec3| wo.dot(ns) > 0.0 && ns.dot(hit.ng) > 0.0 && reflect(wo, ns).dot(hit.ng) > 0.0;
+        let share = |wo: Vec3, normal: Vec3, follows: bool| {
+            let correction = (wo.dot(hit.ng) / wi.dot(hit.ng)).abs();
+            if follows { fresnel::conductor(wi.dot(normal), eta, k) * correction } else { Lanes::ZERO }
+        };
+        let first = share(about_ns, ns, about_ns.dot(hit.ng) > 0.0 && is_shaded(about_ns));
+        let second = share(about_ng, hit.ng, ns != hit.ng && !is_shaded(about_ng));
+        let sums = [first, second].map(|s| (s * branch.throughput).element_sum());
+        let total = sums[0] + sums[1];
+        if total <= 0.0 {
+            return Fate::Ends;
+        }
+        let takes_first = u[1] * total < sums[0];
+        let (weight, direction, own) =
+            if takes_first { (first, about_ns, sums[0]) } else { (second, about_ng, sums[1]) };
+        branch.throughput *= weight * (total / own);
+        branch.leave(hit, direction);
+        flying.turned_by_mirror();
+        flying.branch.interacted(u[3])
+    }
+
+    /// A diffuse surface: the photon is left there, and goes on.
+    fn arrive(
+        &mut self,
+        flying: &mut Flying,
+        hit: &SurfaceHit,
+        reflectance: &LaneCurve,
+        u: [f32; 4],
+    ) -> Fate {
+        let branch = &mut flying.branch;
+        let wi = -branch.direction;
+        let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
+        let cos = wi.dot(hit.ng);
+        if cos <= 0.0 {
+            return Fate::Ends;
+        }
+        // What leaves in any direction is the same multiple of what arrives through the surface: the adjoint of the lobe.
+        branch.throughput *= lobe.pdf_w(wi) * std::f32::consts::PI / cos;
+        let photon = Photon {
+            position: hit.point.position,
+            direction: branch.direction,
+            normal: hit.ng,
+            medium: branch.medium,
+            flux: branch.throughput * flying.scale,
+        };
+        match flying.history {
+            History::Straight => {}
+            History::Specular => self.arrivals.caustic.push(photon),
+            History::Scattered => self.arrivals.global.push(photon),
+        }
+        if self.sample.is_spent(branch) {
+            return Fate::Ends;
+        }
+        branch.throughput *= reflectance.lanes(self.tracing.wavelengths);
+        let local = warp::cosine_hemisphere([u[1], u[2]]);
+        branch.leave(hit, Basis::around(hit.ng).to_world(local).normalize());
+        flying.history = History::Scattered;
+        flying.branch.interacted(u[3])
+    }
+
+    /// A particle of a medium: the photon is left there, and turns.
+    fn scatter(&mut self, flying: &mut Flying, distance: f32, u: [f32; 4]) -> Fate {
+        let branch = &mut flying.branch;
+        let point = branch.origin + branch.direction * distance;
+        let share = self.tracing.volume_share;
+        if share >= 1.0 || branch.stream.next4()[0] < share {
+            self.arrivals.volume.push(Photon {
+                position: point,
+                direction: branch.direction,
+                normal: Vec3::ZERO,
+                medium: branch.medium,
+                flux: branch.throughput * (flying.scale / share),
+            });
+        }
+        if self.sample.is_spent(branch) {
+            return Fate::Ends;
+        }
+        let turned = self.tracing.frame.medium(branch.medium).phase.sample(branch.direction, [u[1], u[2]]);
+        branch.throughput *= turned.weight;
+        branch.origin = point;
+        branch.direction = turned.wi;
+        branch.leaves = u32::MAX;
+        flying.history = History::Scattered;
+        flying.branch.interacted(u[3])
+    }
+}
+
+impl Flying {
+    fn turned_by_mirror(&mut self) {
+        if self.history == History::Straight {
+            self.history = History::Specular;
+        }
+        self.branch.arrival = Arrival { specular_from_eye: false, lit: None };
+    }
+}
