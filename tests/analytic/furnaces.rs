@@ -51,8 +51,7 @@ fn a_smooth_glass_sphere_vanishes_in_white_surroundings() {
 }
 
 /// In a dense medium most flights are not traced, since they end within a ball that holds no surface. A flight that left
-/// the fluid unseen would show: it would meet the next surface from the wrong side, or none. The late roulette, from
-/// interaction 1024 on, makes some noise.
+/// the fluid unseen would show: it would meet the next surface from the wrong side, or none.
 #[test]
 fn walks_through_a_dense_medium_trace_little_and_lose_nothing() {
     let folder = SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 0.8, 4));
