@@ -54,7 +54,8 @@ fn s06_turbid_waves_in_a_tank_agree_with_mitsuba() {
     compare(&picture, &statistics("s06_turbid_wavy")).assert_agrees("s06_turbid_wavy");
 }
 
-/// The lamp behind the ball is large enough for chance to find it: 1 / 70 of the directions from below.
+/// The lamp is large enough for chance to find it: it takes 1 / 460 of what a point of the floor reflects, and more where
+/// the ball gathers its light.
 #[test]
 fn s08_a_caustic_agrees_with_mitsuba() {
     let picture = scene("s08_caustic").render(2048, 0);
