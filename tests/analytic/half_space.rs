@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
+use super::walls::sky_picture;
 use crate::common::h_function::HFunction;
-use crate::common::mesh::{TestMesh, parallelogram};
+use crate::common::mesh::{TestMesh, parallelogram, sphere};
 use crate::common::scene::SceneFolder;
 
 /// Cosines with the normal under which a half space is lit and seen.
@@ -122,6 +123,43 @@ fn a_glowing_half_space_shows_what_it_does_not_reflect() {
         let scene = folder.scene(&format!("{TURBID}emission = 2\n{SLAB}{}", camera(mu)));
         let expected = [0, 1, 2].map(|i| 2.0 * (1.0 - ALBEDOS[i]).sqrt() * h[i].at(mu));
         assert_mean(&format!("glow, mu {mu}"), &scene.render(1024, seed), DVec3::from_array(expected), 5e-3);
+    }
+}
+
+/// Isotropic scattering does not ask for the azimuth of light, so half a sky that shines 2 is reflected as a whole one that
+/// shines 1:
+///
+/// ```text
+/// L(mu) = 1 - sqrt(1 - albedo) H(mu)
+/// ```
+///
+/// The half is a lamp of triangles or a picture of the sky, looked for from each particle through the matched boundary and
+/// weighted against running into it, or found by chance alone.
+#[test]
+fn a_half_space_reflects_half_a_sky_however_it_is_found() {
+    let h = h_functions();
+    let dome = sphere(DVec3::ZERO, 400.0, 3).turned();
+    let is_lamp = |t: &[u32; 3]| t.iter().map(|&v| dome.positions[v as usize].y).sum::<f64>() > 0.0;
+    let lamp = TestMesh {
+        triangles: dome.triangles.iter().copied().filter(is_lamp).collect(),
+        positions: dome.positions.clone(),
+    };
+    let picture = sky_picture(|d| DVec3::splat(if d.y > 0.0 { 2.0 } else { 0.0 }));
+    let folder = slab(50.0, 200.0).mesh("lamp.ply", &lamp).file("sky.exr", &picture);
+    let lights = [
+        ("lamp", "[[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = { kind = \"emitter\", radiance = 2 }\n"),
+        ("picture", "[sky]\nradiance = { image = \"sky.exr\" }\n"),
+    ];
+    for (name, light) in lights {
+        for (seed, mu) in (0..).zip(COSINES) {
+            let mut scene = folder.scene(&format!("{TURBID}{SLAB}{light}{}", camera(mu)));
+            let expected = [0, 1, 2].map(|i| 1.0 - (1.0 - ALBEDOS[i]).sqrt() * h[i].at(mu));
+            let expected = DVec3::from_array(expected);
+            assert_mean(&format!("{name}, mu {mu}"), &scene.render(256, seed), expected, 1e-2);
+            scene.frame.needs.direct_light = false;
+            let name = format!("{name} by chance, mu {mu}");
+            assert_mean(&name, &scene.render(256, 10 + seed), expected, 1e-2);
+        }
     }
 }
 
