@@ -13,6 +13,7 @@ mod analytic {
     mod environment;
     mod estimates;
     mod furnaces;
+    mod half_space;
     mod lamps;
     mod limits;
     mod media;

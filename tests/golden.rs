@@ -8,7 +8,7 @@ mod common;
 use std::path::Path;
 
 use common::reference::{blocks, compare, folder, scene, statistics, statistics_in};
-use common::render::{Prepared, prepare};
+use common::render::{Prepared, Rendered, prepare};
 use floe::geometry::Ray;
 use floe::integrator::Scratch;
 use floe::sampling::SampleStream;
@@ -38,6 +38,39 @@ fn s02_a_cube_on_a_floor_agrees_with_mitsuba() {
 fn s03_absorbing_boxes_agree_with_mitsuba() {
     let picture = scene("s03_beer").render(1024, 0);
     compare(&picture, &statistics("s03_beer")).assert_agrees("s03_beer");
+}
+
+/// An index-matched boundary, free flights and single and multiple scattering of light that next-event estimation finds.
+#[test]
+fn s04_a_matched_box_of_fog_agrees_with_mitsuba() {
+    let picture = scene("s04_iso_box_null").render(1024, 0);
+    compare(&picture, &statistics("s04_iso_box_null")).assert_agrees("s04_iso_box_null");
+}
+
+/// Lanes that scatter differently, a lobe, refraction, and light that chance alone finds.
+#[test]
+fn s06_turbid_waves_in_a_tank_agree_with_mitsuba() {
+    let picture = scene("s06_turbid_wavy").render(1024, 0);
+    compare(&picture, &statistics("s06_turbid_wavy")).assert_agrees("s06_turbid_wavy");
+}
+
+/// The lamp is large enough for chance to find it: it takes 1 / 460 of what a point of the floor reflects, and more where
+/// the ball gathers its light.
+#[test]
+fn s08_a_caustic_agrees_with_mitsuba() {
+    let picture = scene("s08_caustic").render(2048, 0);
+    compare(&picture, &statistics("s08_caustic")).assert_agrees("s08_caustic");
+}
+
+/// Eight seeds together have a third of the standard errors.
+#[test]
+#[ignore = "takes six minutes on two cores"]
+fn scattering_and_caustics_agree_with_mitsuba_on_eight_seeds() {
+    for (name, samples) in [("s04_iso_box_null", 4096), ("s06_turbid_wavy", 2048), ("s08_caustic", 8192)] {
+        let scene = scene(name);
+        let pictures = (1..=8).map(|seed| scene.render(samples, seed));
+        compare(&Rendered::pooled(pictures.collect()), &statistics(name)).assert_agrees(name);
+    }
 }
 
 /// The variances that a picture states against the spread of pictures of other seeds.

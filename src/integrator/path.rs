@@ -29,12 +29,14 @@ pub struct PathTracer {
     pub split: u32,
 }
 
-/// From this interaction on a path survives with [`LATE_SURVIVAL`], whatever its throughput.
+/// From this surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`], whatever its throughput.
 const LATE_ROULETTE: u32 = 1024;
 /// Probability of going on at each interaction beyond [`LATE_ROULETTE`].
 const LATE_SURVIVAL: f32 = 0.98;
-/// No path goes on beyond this many interactions.
+/// No path goes on beyond this many surfaces without a particle in between.
 pub const HARD_LIMIT: u32 = 65_536;
+/// No path goes on beyond this many interactions: a slab of optical depth 1000 lets go of all but 1e-8 before.
+const LONGEST_WALK: u32 = 1 << 22;
 
 /// A path being followed.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +52,7 @@ pub struct Branch {
     /// The branch's share of the path at its splits, which roulette measures the throughput by.
     pub(super) share: f32,
     pub(super) interactions: u32,
-    /// Interactions and index-matched boundaries.
+    /// Surfaces, index-matched boundaries too, since the last particle.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
     /// Particles at which it may still turn; beyond them media only attenuate.
@@ -164,7 +166,7 @@ impl Sample<'_> {
         &mut self,
         branch: &mut Branch,
     ) -> Fate {
-        if branch.steps >= HARD_LIMIT {
+        if branch.steps >= HARD_LIMIT || branch.interactions >= LONGEST_WALK {
             return self.cut(branch);
         }
         branch.steps += 1;
@@ -221,6 +223,7 @@ impl Sample<'_> {
         branch.leaves = u32::MAX;
         let vertex = LitVertex { position: point, pdf_w: turned.pdf_w };
         branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
+        branch.steps = 0;
         branch.interacted(u[3])
     }
 
@@ -302,7 +305,7 @@ impl Branch {
     pub(super) fn interacted(&mut self, u: f32) -> Fate {
         self.interactions += 1;
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
-        let late = if self.interactions >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        let late = if self.steps >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
         // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
         let survival = if kept >= 1.0 { late } else { kept * late };
         if survival >= 1.0 {

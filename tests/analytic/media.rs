@@ -34,9 +34,14 @@ fn npy(size: [usize; 3], value: impl Fn(usize) -> f32) -> Vec<u8> {
     bytes
 }
 
-/// The cube from -0.7 to 0.7 and a plume of values from 0 to 2 that repeat nowhere.
+/// Values from 0 to 2 that repeat nowhere.
+fn plume_value(cell: usize) -> f32 {
+    (cell * 37 % 101) as f32 / 50.0
+}
+
+/// The cube from -0.7 to 0.7 and a plume.
 fn folder() -> SceneFolder {
-    let plume = npy([7, 9, 5], |i| (i * 37 % 101) as f32 / 50.0);
+    let plume = npy([7, 9, 5], plume_value);
     SceneFolder::new()
         .mesh("cube.ply", &cuboid(DVec3::splat(-0.7), DVec3::splat(0.7)))
         .file("plume.npy", &plume)
@@ -142,6 +147,67 @@ fn light_through_a_grid_follows_bouguers_law() {
     let length = 0.9_f64 * (0.5 + 2.0 + 0.25) / 3.0;
     let expected = DVec3::new((-0.5 * length).exp(), (-2.0 * length).exp(), 1.0);
     assert_every_pixel("column of a grid", &scene.render(4, 0), expected, 2e-6);
+}
+
+/// Optical depth of the plume along a ray, by the midpoint rule over the cube and the grid's box: values belong to cell
+/// centres, are linear in between, and flat in the outer halves of the outer cells.
+fn plume_depth(eye: DVec3, direction: DVec3) -> f64 {
+    let (min, max) = (DVec3::new(-0.6, -0.8, -0.7), DVec3::new(0.7, 0.5, 0.9));
+    let (low, high) = (min.max(DVec3::splat(-0.7)), max.min(DVec3::splat(0.7)));
+    let ([a, b], count) = ([low, high].map(|corner| (corner - eye) / direction), [7_usize, 9, 5]);
+    let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
+    let step = (far - near).max(0.0) / 20_000.0;
+    let density = |t: f64| {
+        let cell = (eye + t * direction - min) / (max - min) * DVec3::new(7.0, 9.0, 5.0) - 0.5;
+        let mut sum = 0.0;
+        for corner in 0..8 {
+            let (mut weight, mut index) = (1.0, [0; 3]);
+            for axis in 0..3 {
+                let (upper, floor) = (corner >> axis & 1, cell[axis].floor());
+                let share = cell[axis] - floor;
+                weight *= if upper == 1 { share } else { 1.0 - share };
+                index[axis] = (floor as i64 + upper).clamp(0, count[axis] as i64 - 1) as usize;
+            }
+            sum += weight * f64::from(plume_value(index[0] + 7 * (index[1] + 9 * index[2])));
+        }
+        sum
+    };
+    (0..20_000).map(|i| density(near + (f64::from(i) + 0.5) * step)).sum::<f64>() * step
+}
+
+/// Light that is absorbed exactly, and the share of free flights that end at a particle: the picture's alpha.
+#[test]
+fn oblique_rays_through_a_grid_follow_its_quadrature() {
+    let folder = folder();
+    for (eye, target) in [
+        (DVec3::new(1.2, -3.5, 0.8), DVec3::new(0.02, 0.01, 0.03)),
+        (DVec3::new(-2.0, 2.5, -3.0), DVec3::new(0.1, -0.2, 0.15)),
+        (DVec3::new(0.3, 0.2, 4.0), DVec3::new(0.1, -0.3, 0.0)),
+        (DVec3::new(-3.0, -0.4, 0.5), DVec3::new(0.0, -0.6, 0.6)),
+        (DVec3::new(2.5, 2.0, 1.0), DVec3::new(0.5, 0.3, -0.4)),
+    ] {
+        let render = |coefficients: &str, samples| {
+            let scene = folder.scene(&format!(
+                "[media.fluid]\n{coefficients}\n{}\n{CUBE}[sky]\nradiance = 1\n[camera]\neye = {:?}\ntarget = {:?}\n\
+                 vertical_fov = 0.0001\nresolution = [8, 8]\n",
+                DENSITIES[3],
+                eye.to_array(),
+                target.to_array()
+            ));
+            scene.render(samples, 0)
+        };
+        let depth = plume_depth(eye, (target - eye).normalize());
+        let expected = DVec3::new((-0.5 * depth).exp(), (-2.0 * depth).exp(), 1.0);
+        let name = format!("grid from {eye}");
+        assert_every_pixel(&name, &render("absorption = [0.5, 2, 0]", 1), expected, 1e-5);
+        let samples = 256;
+        let alphas = render("scattering = 1", samples).image.pixels;
+        let alpha = alphas.iter().map(|p| f64::from(p.alpha)).sum::<f64>() / 64.0;
+        let share = -libm::expm1(-depth);
+        let se = (share * (1.0 - share) / f64::from(64 * samples)).sqrt();
+        println!("{name}: depth {depth:.6}, {alpha:.5} of the flights end, expected {share:.5} +- {se:.5}");
+        assert!((alpha - share).abs() < 5.0 * se, "{name}: {alpha} of the flights end and not {share}");
+    }
 }
 
 /// A grid for each frame is that of the frame's number: a still is number 1.

@@ -63,6 +63,24 @@ impl Prepared {
 }
 
 impl Rendered {
+    /// The mean of pictures of different seeds.
+    pub fn pooled(mut pictures: Vec<Self>) -> Self {
+        let count = pictures.len() as f32;
+        let mut sum = pictures.swap_remove(0);
+        for picture in &pictures {
+            for (pixel, other) in sum.image.pixels.iter_mut().zip(&picture.image.pixels) {
+                pixel.rgb += other.rgb;
+                pixel.variance += other.variance;
+            }
+            sum.counters += picture.counters;
+        }
+        for pixel in &mut sum.image.pixels {
+            pixel.rgb /= count;
+            pixel.variance /= count * count;
+        }
+        sum
+    }
+
     /// Linear RGB of a pixel.
     pub fn rgb(&self, x: u32, y: u32) -> DVec3 {
         self.image.pixels[(y * self.image.width + x) as usize].rgb.as_dvec3()

@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use floe::optics::phase::{Deflection, EXAMPLES, HenyeyGreenstein, PhaseFunction};
+use floe::optics::phase::{
+    CornetteShanks, Deflection, Draine, EXAMPLES, HenyeyGreenstein, PhaseFunction, Schlick,
+    TwoTermHenyeyGreenstein,
+};
 use glam::Vec3;
 
 use super::tests_of_fit::{SAMPLES, assert_fits, cell_of};
@@ -63,8 +66,21 @@ fn angle_of(d: Deflection) -> f64 {
 
 #[test]
 fn phase_functions_are_normalised_and_have_their_mean_cosine() {
+    let hg = |g| HenyeyGreenstein { g };
+    let two = TwoTermHenyeyGreenstein { share: 0.5, first: hg(0.9999), second: hg(-0.9999) };
     let strong = [0.999_999_f32, 0.3, -0.95, -0.999_999]
-        .map(|g| (format!("henyey-greenstein {g}"), PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g })));
+        .map(|g| (format!("henyey-greenstein {g}"), PhaseFunction::HenyeyGreenstein(hg(g))))
+        .into_iter()
+        .chain([
+            ("two-term-henyey-greenstein +-0.9999".to_owned(), PhaseFunction::TwoTermHenyeyGreenstein(two)),
+            ("schlick 0.9999".to_owned(), PhaseFunction::Schlick(Schlick { k: 0.9999 })),
+        ])
+        .chain([0.9999, -0.9999].into_iter().flat_map(|g| {
+            let shanks = CornetteShanks::new(g).map(PhaseFunction::CornetteShanks);
+            let draine = Draine::new(g, 3.0).map(PhaseFunction::Draine);
+            [(format!("cornette-shanks {g}"), shanks), (format!("draine {g} 3"), draine)]
+                .map(|(name, phase)| (name, phase.unwrap()))
+        }));
     let listed = EXAMPLES.iter().map(|(name, phase)| ((*name).to_owned(), phase.clone()));
     for (name, phase) in listed.chain(strong) {
         let whole = integral(|d| f64::from(phase.value(d)));
