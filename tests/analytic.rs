@@ -12,10 +12,12 @@ mod analytic {
     mod boundaries;
     mod environment;
     mod estimates;
+    mod fog;
     mod furnaces;
     mod lamps;
     mod limits;
     mod media;
+    mod single_scattering;
     mod spectral;
     mod sunlight;
     mod walls;

@@ -7,7 +7,9 @@ pub mod ambient_occlusion;
 pub mod counters;
 mod direct;
 mod flight;
+mod left_out;
 pub mod path;
+pub mod scattered;
 mod vertex;
 
 use glam::Vec3;
@@ -15,10 +17,12 @@ use glam::Vec3;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use counters::Counters;
 pub use path::PathTracer;
+pub use scattered::Scattered;
 
 use crate::accel::Hit;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
+use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
 use crate::spectrum::{Lanes, Wavelengths};
 
@@ -50,7 +54,7 @@ pub struct Scratch {
     /// Coefficients of every medium at the wavelengths of the current sample.
     pub(crate) media: Vec<MediumLanes>,
     /// What an endless depth of every medium adds to a path ([`crate::optics::medium::Medium::source`]); empty where
-    /// nothing glows.
+    /// none adds anything.
     pub(crate) sources: Vec<Lanes>,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
@@ -61,13 +65,13 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Takes the media at the wavelengths of a new sample.
-    pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths) {
+    /// Takes the media at the wavelengths of a new sample, and an ambient radiance that they scatter in.
+    pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths, ambient: Lanes) {
         self.media.clear();
         self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
         self.sources.clear();
-        if frame.needs.emission {
-            self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths)));
+        if frame.needs.emission || ambient != Lanes::ZERO {
+            self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths, ambient)));
         }
         self.branches.clear();
         // Another scene may have had some.
@@ -85,6 +89,19 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// What the scene asks for.
+    pub fn new(settings: &RenderDescription) -> Self {
+        let path = |scattered| {
+            Self::Path(PathTracer { max_depth: settings.max_depth, split: settings.split, scattered })
+        };
+        match settings.integrator {
+            IntegratorKind::Auto | IntegratorKind::Path => path(Scattered::Always),
+            IntegratorKind::SingleScattering => path(Scattered::Once),
+            IntegratorKind::Fog => path(Scattered::Ambient),
+            IntegratorKind::AmbientOcclusion => Self::AmbientOcclusion(AmbientOcclusion),
+        }
+    }
+
     /// The radiance through the point (x, y) of the picture, in pixels from the upper left corner.
     pub fn sample(
         &self,
@@ -104,7 +121,11 @@ impl Integrator {
     /// The name in the scene file.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Path(_) => "path",
+            Self::Path(tracer) => match tracer.scattered {
+                Scattered::Always => "path",
+                Scattered::Once => "single-scattering",
+                Scattered::Ambient => "fog",
+            },
             Self::AmbientOcclusion(_) => "ambient-occlusion",
         }
     }

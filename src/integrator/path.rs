@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::flight::{Clearing, Event};
-use super::{EyeSample, FirstHit, Scratch};
+use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
@@ -26,6 +26,8 @@ pub struct PathTracer {
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
+    /// What becomes of the light that particles scatter.
+    pub scattered: Scattered,
 }
 
 /// From this interaction on a path survives with [`LATE_SURVIVAL`], whatever its throughput.
@@ -52,6 +54,8 @@ pub struct Branch {
     /// Interactions and index-matched boundaries.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
+    /// How many particles it may still turn at.
+    pub(super) scatterings_left: u32,
     pub(super) arrival: Arrival,
     pub(super) clearing: Clearing,
     pub(super) stream: SampleStream,
@@ -102,7 +106,7 @@ impl PathTracer {
         wavelengths: &Wavelengths,
         stream: SampleStream,
     ) -> EyeSample {
-        scratch.start(frame, wavelengths);
+        scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
         scratch.branches.push(Branch {
             origin: ray.origin,
             direction: ray.direction,
@@ -114,6 +118,7 @@ impl PathTracer {
             interactions: 0,
             steps: 0,
             splits_left: self.split,
+            scatterings_left: self.scattered.most(),
             arrival: Arrival { specular_from_eye: true, lit: None },
             clearing: Clearing::NONE,
             stream,
@@ -122,7 +127,7 @@ impl PathTracer {
         let mut sample =
             Sample { frame, scratch, wavelengths, max_depth, radiance: Lanes::ZERO, first: None };
         // Light transport is compiled five times over what the scene needs in its inner loop.
-        let varied = frame.needs.heterogeneous || frame.needs.emission;
+        let varied = frame.needs.heterogeneous || !sample.scratch.sources.is_empty();
         match (varied, frame.needs.scattering, frame.needs.direct_light) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
@@ -146,7 +151,7 @@ impl PathTracer {
 impl Sample<'_> {
     /// Follows a branch to its next event and through it.
     ///
-    /// `VARIED` is for media of varying density and for those that emit.
+    /// `VARIED` is for media of varying density and for those that add light.
     fn advance<const SCATTERING: bool, const DIRECT: bool, const VARIED: bool>(
         &mut self,
         branch: &mut Branch,
@@ -200,6 +205,7 @@ impl Sample<'_> {
             self.radiance += branch.throughput * direct;
         }
         let turned = phase.sample(forward, [u[1], u[2]]);
+        branch.scatterings_left -= 1;
         branch.throughput *= turned.weight;
         branch.origin = point;
         branch.direction = turned.wi;

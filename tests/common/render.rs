@@ -4,11 +4,10 @@ use std::path::Path;
 
 use floe::driver::job::Job;
 use floe::driver::tiles::{Sampling, render_pixels};
-use floe::film::{Filter, FrameImage};
-use floe::integrator::{AmbientOcclusion, Counters, Integrator, PathTracer};
+use floe::film::FrameImage;
+use floe::integrator::Counters;
 use floe::sampling::SampleSeed;
 use floe::scene::assembly::FrameMesh;
-use floe::scene::description::IntegratorKind;
 use floe::scene::frame::Frame;
 use glam::DVec3;
 
@@ -33,18 +32,8 @@ pub fn prepare(file: &Path) -> Prepared {
         FrameMesh { path, mesh }
     });
     let assembled = job.world.assemble(task.number, mesh, None).unwrap_or_else(|e| panic!("{e}"));
-    let settings = &job.world.description.render;
-    let path = PathTracer { max_depth: settings.max_depth, split: settings.split };
-    let integrator = match settings.integrator {
-        IntegratorKind::AmbientOcclusion => Integrator::AmbientOcclusion(AmbientOcclusion),
-        _ => Integrator::Path(path),
-    };
-    let sampling = Sampling {
-        integrator,
-        filter: Filter::new(settings.filter),
-        samples: settings.samples,
-        seed: SampleSeed { seed: settings.seed, frame: task.number.millionths() },
-    };
+    let mut sampling = Sampling::new(&job.world.description.render);
+    sampling.seed.frame = task.number.millionths();
     Prepared { frame: assembled.frame, sampling }
 }
 

@@ -17,9 +17,11 @@ impl Default for RenderDescription {
     }
 }
 
-const INTEGRATORS: [(&str, IntegratorKind); 3] = [
+const INTEGRATORS: [(&str, IntegratorKind); 5] = [
     ("auto", IntegratorKind::Auto),
     ("path", IntegratorKind::Path),
+    ("single-scattering", IntegratorKind::SingleScattering),
+    ("fog", IntegratorKind::Fog),
     ("ambient-occlusion", IntegratorKind::AmbientOcclusion),
 ];
 
