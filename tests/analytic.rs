@@ -12,11 +12,13 @@ mod analytic {
     mod boundaries;
     mod environment;
     mod estimates;
+    mod fog;
     mod furnaces;
     mod half_space;
     mod lamps;
     mod limits;
     mod media;
+    mod single_scattering;
     mod spectral;
     mod sunlight;
     mod walls;

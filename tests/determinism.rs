@@ -10,11 +10,9 @@ use std::path::{Path, PathBuf};
 use floe::driver::RenderOptions;
 use floe::driver::job::Job;
 use floe::driver::tiles::{Sampling, render_pixels};
-use floe::film::{Filter, FrameImage, ImageMetadata, write_frame};
-use floe::integrator::{Integrator, PathTracer};
+use floe::film::{FrameImage, ImageMetadata, write_frame};
 use floe::mesh::canonical::canonical;
 use floe::mesh::{Format, Interface, RawMesh, Region, Syntax, read, read_bytes};
-use floe::sampling::SampleSeed;
 use floe::scene::assembly::FrameMesh;
 use floe::scene::description::Aov;
 use floe::scene::world::World;
@@ -207,12 +205,7 @@ fn rendered(scene: &str, mesh: &RawMesh) -> Rendered {
     let world = Job::open(&folder.path("scene.toml")).unwrap().world;
     let mesh = FrameMesh { path: "frame_0000".into(), mesh: mesh.clone() };
     let assembled = world.assemble(FrameNumber::default(), Some(mesh), None).unwrap();
-    let sampling = Sampling {
-        integrator: Integrator::Path(PathTracer { max_depth: 0, split: 1 }),
-        filter: Filter::new(world.description.render.filter),
-        samples: world.description.render.samples,
-        seed: SampleSeed { seed: 0, frame: 0 },
-    };
+    let sampling = Sampling::new(&world.description.render);
     let (image, _) = render_pixels(&assembled.frame, &sampling, &|_, _| ());
     Rendered { world, image }
 }

@@ -94,6 +94,7 @@ fn spectra_in_every_form() {
     assert_eq!(scene.sun.unwrap().irradiance, irradiance);
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Planck { temperature: 1500.0 }));
     assert_eq!(scene.render.seed, u64::MAX);
+    assert_eq!(example("plain numbers").render.integrator, IntegratorKind::Fog);
     let fog = &example("plain numbers").media["fog"];
     assert_eq!(fog.scattering, Spectrum::Constant(1000.0));
     assert_eq!(fog.absorption, Some(AbsorptionDescription::Spectrum(Spectrum::Constant(16.0))));
@@ -101,7 +102,9 @@ fn spectra_in_every_form() {
 
 #[test]
 fn media_in_every_notation() {
-    let media = example("turbid").media;
+    let scene = example("turbid");
+    assert_eq!(scene.render.integrator, IntegratorKind::SingleScattering);
+    let media = scene.media;
     assert_eq!(media["lava"].emission, Spectrum::Planck { temperature: 1500.0 });
     let (min, max) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 4.0));
     let grid = DensityDescription::Grid { file: "plume_####.npy".to_owned(), min, max };
@@ -244,7 +247,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[camera]\nresolution = 640", 2, 14, "camera.resolution: 640: write width and height in pixels"),
     ("[camera]\nresolution = [640, 360, 1]", 2, 14, "write width and height in pixels"),
     ("[render]\nsamples = 64.0", 2, 11, "render.samples: 64.0: write a whole number from 1 to 4294967295"),
-    ("[render]\nintegrator = 'photon'", 2, 14, "write one of `auto`, `path` and `ambient-occlusion`"),
+    ("[render]\nintegrator = 'photon'", 2, 14, "write one of `auto`, `path`, `single-scattering`, `fog` and `ambient-occlusion`"),
     ("[render]\nfilter = 1979-05-27", 2, 10, "write one of `box`, `gaussian` and `blackman-harris` in quotes"),
     ("[output]\npng = 'yes'", 2, 7, "output.png: 'yes': write true or false"),
     ("[output]\naovs = 'N'", 2, 8, "output.aovs: 'N': write a list such as"),

@@ -8,6 +8,7 @@ use clap::Args;
 use super::exit::Exit;
 use super::streams::{print, say};
 use crate::driver::{Job, RenderError};
+use crate::integrator::Integrator;
 use crate::mesh;
 use crate::optics::density::Density;
 use crate::scene::FrameError;
@@ -47,6 +48,7 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
         Some(selection) => job.select(selection)?,
         None => job.tasks().into_iter().take(1).collect(),
     };
+    let integrator = Integrator::new(&job.world.description.render);
     let mut previous = None;
     for task in chosen {
         let mesh = match &task.file {
@@ -56,7 +58,7 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
             None => None,
         };
         let assembled = job.world.assemble(task.number, mesh, previous.as_ref())?;
-        *text += &describe_frame(&task.number.to_string(), &assembled);
+        *text += &describe_frame(&task.number.to_string(), &assembled, &integrator);
         previous = Some(assembled.frame);
     }
     Ok(())
@@ -141,7 +143,7 @@ fn describe_density(described: &DensityDescription, density: &Density) -> Option
     }
 }
 
-fn describe_frame(number: &str, assembled: &Assembled) -> String {
+fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) -> String {
     let frame = &assembled.frame;
     let mut text = format!("frame {number}\n");
     let _ = writeln!(text, "  triangles {}", frame.geometry.triangles.len());
@@ -151,8 +153,13 @@ fn describe_frame(number: &str, assembled: &Assembled) -> String {
     let _ = writeln!(text, "  camera in {}", frame.medium(frame.camera_medium).name);
     let hierarchy = assembled.update.hierarchy.name();
     let _ = writeln!(text, "  hierarchy {hierarchy}, {} bytes", frame.accel.bytes());
-    for line in frame.needs.lines() {
+    let _ = writeln!(text, "  integrator {}", integrator.name());
+    for line in integrator.lines(&frame.needs) {
         let _ = writeln!(text, "  {line}");
+    }
+    let left_out = integrator.left_out(&frame.needs);
+    if !left_out.is_empty() {
+        let _ = writeln!(text, "  left out: {}", left_out.join(", "));
     }
     for warning in &assembled.warnings {
         let _ = writeln!(text, "  warning: {warning}");

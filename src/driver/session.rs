@@ -9,9 +9,7 @@ use super::ledger::{FrameRecord, Ledger, Status};
 use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Sampling, render_pixels};
 use crate::accel::Hierarchy;
-use crate::film::{DEFAULT_CONFIDENCE, Filter, FrameImage, ImageMetadata, estimate_error, write_frame};
-use crate::integrator::Integrator;
-use crate::sampling::SampleSeed;
+use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::scene::assembly::Assembled;
 use crate::scene::description::RenderDescription;
 use crate::sequence::{FrameNumber, output_path};
@@ -47,7 +45,7 @@ impl<'a> Session<'a> {
             pattern: pattern.into(),
             ledger: ledger.path().into(),
         };
-        let sampling = sampling_of(&settings);
+        let sampling = Sampling::new(&settings);
         Ok(Self { job, pattern: pattern.into(), settings, sampling, ledger, report, observer })
     }
 
@@ -101,6 +99,8 @@ impl<'a> Session<'a> {
         record: &mut FrameRecord,
     ) -> Result<(), RenderError> {
         describe(record, assembled);
+        let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
+        record.left_out = left_out.into_iter().map(Into::into).collect();
         for warning in &record.warnings {
             self.observer.warning(warning);
         }
@@ -180,9 +180,6 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.refitted = assembled.update.hierarchy == Hierarchy::Refitted;
     record.cost_ratio = assembled.update.cost_ratio;
     record.warnings.clone_from(&assembled.warnings);
-    if frame.needs.sun_behind_interface {
-        record.left_out.push("sunlight through refracting interfaces".into());
-    }
 }
 
 fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescription {
@@ -190,15 +187,6 @@ fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescri
         samples: options.samples.unwrap_or(scene.samples),
         seed: options.seed.unwrap_or(scene.seed),
         ..scene.clone()
-    }
-}
-
-fn sampling_of(settings: &RenderDescription) -> Sampling {
-    Sampling {
-        integrator: Integrator::new(settings),
-        filter: Filter::new(settings.filter),
-        samples: settings.samples,
-        seed: SampleSeed { seed: settings.seed, frame: 0 },
     }
 }
 

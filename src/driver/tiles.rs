@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
 use crate::integrator::{Counters, EyeSample, Integrator, PhotonMapper, PhotonPass, Scratch};
 use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
+use crate::scene::description::RenderDescription;
 use crate::scene::frame::Frame;
 use crate::spectrum::{Wavelengths, film_rgb};
 
@@ -27,6 +28,18 @@ pub struct Sampling {
     pub samples: u32,
     /// What samples depend on besides pixel and index.
     pub seed: SampleSeed,
+}
+
+impl Sampling {
+    /// What the scene asks for, at frame 0.
+    pub fn new(settings: &RenderDescription) -> Self {
+        Self {
+            integrator: Integrator::new(settings),
+            filter: Filter::new(settings.filter),
+            samples: settings.samples,
+            seed: SampleSeed { seed: settings.seed, frame: 0 },
+        }
+    }
 }
 
 /// Renders all pixels; `progress` hears of the tiles done and their number.

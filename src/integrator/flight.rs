@@ -2,8 +2,8 @@
 //!
 //! In media that only absorb the transmittance is exact; in media that scatter the free flight is drawn in one lane and
 //! weighted over all (one-sample spectral multiple importance sampling). Where the density changes from place to place,
-//! its integral along the ray stands in for the distance. What a medium emits between one event and the next surface is
-//! added as its expectation, exactly.
+//! its integral along the ray stands in for the distance. What a medium adds between one event and the next surface, by
+//! emission or out of an ambient radiance, is added as its expectation, exactly.
 
 use glam::{DVec3, Vec3};
 
@@ -68,7 +68,7 @@ pub(super) enum Event {
 impl Sample<'_> {
     /// Draws the next event of a path with the random number `u`.
     ///
-    /// `VARIED` is for media of varying density and for those that emit.
+    /// `VARIED` is for media of varying density and for those that add light.
     pub(super) fn fly<const SCATTERING: bool, const VARIED: bool>(
         &mut self,
         branch: &mut Branch,
@@ -116,17 +116,16 @@ impl Sample<'_> {
         Event::Surface(hit)
     }
 
-    /// The next surface if it is nearer than `t_max`, and what the medium emits on the way to it, however far it is.
+    /// The next surface if it is nearer than `t_max`, and what the medium adds on the way to it, however far it is.
     fn nearest_and_glow(&mut self, branch: &Branch, medium: &MediumLanes, t_max: f32) -> Option<Hit> {
-        let glows =
-            self.frame.needs.emission && self.scratch.sources[branch.medium.0 as usize] != Lanes::ZERO;
+        let source = self.scratch.sources.get(branch.medium.0 as usize).copied().unwrap_or(Lanes::ZERO);
+        let glows = source != Lanes::ZERO;
         let photons = self.photons.filter(|_| medium.scatters && branch.lookups_left > 0);
         let reach = if glows || photons.is_some() { f32::INFINITY } else { t_max };
         let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: reach };
         let found = self.nearest(branch, &ray);
         if glows {
             let length = self.length::<true>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
-            let source = self.scratch.sources[branch.medium.0 as usize];
             self.radiance += branch.throughput * source * medium.opacity(length);
         }
         if let Some(pass) = photons {

@@ -9,8 +9,10 @@ mod diffuse;
 mod direct;
 mod flight;
 mod interface;
+mod left_out;
 pub mod path;
 pub mod photon;
+pub mod scattered;
 mod vertex;
 
 use glam::Vec3;
@@ -19,6 +21,7 @@ pub use ambient_occlusion::AmbientOcclusion;
 pub use counters::Counters;
 pub use path::PathTracer;
 pub use photon::{PhotonMapper, PhotonPass};
+pub use scattered::Scattered;
 
 use crate::accel::Hit;
 use crate::optics::medium::MediumLanes;
@@ -55,7 +58,7 @@ pub struct Scratch {
     /// Coefficients of every medium at the wavelengths of the current sample.
     pub(crate) media: Vec<MediumLanes>,
     /// What an endless depth of every medium adds to a path ([`crate::optics::medium::Medium::source`]); empty where
-    /// nothing glows.
+    /// none adds anything.
     pub(crate) sources: Vec<Lanes>,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
@@ -66,13 +69,13 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Takes the media at the wavelengths of a new sample.
-    pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths) {
+    /// Takes the media at the wavelengths of a new sample, and an ambient radiance that they scatter in.
+    pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths, ambient: Lanes) {
         self.media.clear();
         self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
         self.sources.clear();
-        if frame.needs.emission {
-            self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths)));
+        if frame.needs.emission || ambient != Lanes::ZERO {
+            self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths, ambient)));
         }
         self.branches.clear();
         // Another scene may have had some.
@@ -94,10 +97,14 @@ pub enum Integrator {
 impl Integrator {
     /// What the scene asks for.
     pub fn new(settings: &RenderDescription) -> Self {
-        let path = PathTracer { max_depth: settings.max_depth, split: settings.split };
+        let path = |scattered| PathTracer { max_depth: settings.max_depth, split: settings.split, scattered };
         match settings.integrator {
-            IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path),
-            IntegratorKind::Photon => Self::Photon(PhotonMapper { path, settings: settings.photons }),
+            IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path(Scattered::Always)),
+            IntegratorKind::SingleScattering => Self::Path(path(Scattered::Once)),
+            IntegratorKind::Fog => Self::Path(path(Scattered::Ambient)),
+            IntegratorKind::Photon => {
+                Self::Photon(PhotonMapper { path: path(Scattered::Always), settings: settings.photons })
+            }
             IntegratorKind::AmbientOcclusion => Self::AmbientOcclusion(AmbientOcclusion),
         }
     }
@@ -125,7 +132,11 @@ impl Integrator {
     /// The name in the scene file.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Path(_) => "path",
+            Self::Path(tracer) => match tracer.scattered {
+                Scattered::Always => "path",
+                Scattered::Once => "single-scattering",
+                Scattered::Ambient => "fog",
+            },
             Self::Photon(_) => "photon",
             Self::AmbientOcclusion(_) => "ambient-occlusion",
         }

@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::direct::Receiver;
 use super::flight::{Clearing, Event};
 use super::photon::PhotonPass;
-use super::{EyeSample, FirstHit, Scratch};
+use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
@@ -27,6 +27,8 @@ pub struct PathTracer {
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
+    /// What becomes of the light that particles scatter.
+    pub scattered: Scattered,
 }
 
 /// From this surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`], whatever its throughput.
@@ -55,7 +57,7 @@ pub struct Branch {
     /// Surfaces, index-matched boundaries too, since the last particle.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
-    /// Particles at which it may still turn; beyond them media only attenuate.
+    /// How many particles it may still turn at; beyond them media only attenuate.
     pub(super) scatterings_left: u32,
     /// Vertices at which it still asks for photons.
     pub(super) lookups_left: u8,
@@ -119,12 +121,12 @@ impl PathTracer {
         stream: SampleStream,
         photons: Option<&PhotonPass>,
     ) -> EyeSample {
-        scratch.start(frame, wavelengths);
+        scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
         scratch.branches.push(Branch {
             medium: frame.camera_medium,
             throughput: frame.mode.white(),
             splits_left: self.split,
-            scatterings_left: if photons.is_none_or(|pass| pass.walks) { u32::MAX } else { 0 },
+            scatterings_left: self.scattered.most() * u32::from(photons.is_none_or(|pass| pass.walks)),
             lookups_left: photons.map_or(0, |pass| pass.lookups),
             ..Branch::new(ray.origin, ray.direction, stream)
         });
@@ -132,7 +134,7 @@ impl PathTracer {
         let mut sample =
             Sample { frame, scratch, wavelengths, max_depth, photons, radiance: Lanes::ZERO, first: None };
         // Light transport is compiled five times over what the scene needs in its inner loop.
-        let varied = frame.needs.heterogeneous || frame.needs.emission || photons.is_some();
+        let varied = frame.needs.heterogeneous || !sample.scratch.sources.is_empty() || photons.is_some();
         match (varied, frame.needs.scattering, frame.needs.direct_light) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
@@ -161,7 +163,7 @@ impl PathTracer {
 impl Sample<'_> {
     /// Follows a branch to its next event and through it.
     ///
-    /// `VARIED` is for media of varying density and for those that emit.
+    /// `VARIED` is for media of varying density and for those that add light.
     fn advance<const SCATTERING: bool, const DIRECT: bool, const VARIED: bool>(
         &mut self,
         branch: &mut Branch,
@@ -217,6 +219,7 @@ impl Sample<'_> {
             self.radiance += branch.throughput * direct;
         }
         let turned = phase.sample(forward, [u[1], u[2]]);
+        branch.scatterings_left -= 1;
         branch.throughput *= turned.weight;
         branch.origin = point;
         branch.direction = turned.wi;

@@ -8,6 +8,12 @@
 //! * The sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
 //!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out.
 //! * Emitting triangles are sampled by area.
+//!
+//! Where nobody looks for them, sky and sun are an ambient radiance from all around,
+//!
+//! ```text
+//! L_ambient = (integral of L_sky over the sphere + E_sun) / (4 pi)
+//! ```
 
 pub mod area;
 pub mod environment;
@@ -21,7 +27,7 @@ pub use sun::Sun;
 
 use glam::Vec3;
 
-use crate::spectrum::Lanes;
+use crate::spectrum::{Lanes, Wavelengths};
 
 /// Every light of a scene.
 #[derive(Clone, Debug)]
@@ -53,6 +59,12 @@ impl Lights {
     /// True when next-event estimation can find anything.
     pub fn are_sampled(&self) -> bool {
         self.environment.is_sampled() || self.sun.is_some() || self.area.is_some()
+    }
+
+    /// Sky and sun spread over all directions; emitting triangles have no part in it.
+    pub fn ambient(&self, wavelengths: &Wavelengths) -> Lanes {
+        let sun = self.sun.as_ref().map_or(Lanes::ZERO, |sun| sun.mean_radiance(wavelengths));
+        self.environment.mean_radiance(wavelengths) + sun
     }
 }
 

@@ -63,6 +63,11 @@ impl Sun {
         }
     }
 
+    /// Its light spread over all directions.
+    pub fn mean_radiance(&self, wavelengths: &Wavelengths) -> Lanes {
+        self.irradiance.lanes(wavelengths) * (0.25 * std::f32::consts::FRAC_1_PI)
+    }
+
     fn disc_radiance(&self, wavelengths: &Wavelengths) -> Lanes {
         self.irradiance.lanes(wavelengths) / (std::f32::consts::PI * self.sin_squared)
     }

@@ -7,6 +7,7 @@
 //! ```text
 //! L = n^2 Le sigma_a / sigma_t (1 - exp(-sigma_t d))
 //! ```
+//! An ambient radiance that is scattered in from all around adds to it in the same way, with sigma_s for sigma_a.
 
 use glam::Vec4;
 
@@ -81,15 +82,17 @@ impl Medium {
         !self.emission.is_zero() && !self.sigma_a.is_zero()
     }
 
-    /// n^2 Le sigma_a / sigma_t: what an endless depth adds to the radiance of a way.
-    pub fn source(&self, wavelengths: &Wavelengths) -> Lanes {
-        if !self.glows() {
+    /// n^2 (Le sigma_a + L_ambient sigma_s) / sigma_t: what an endless depth adds to the radiance of a way.
+    pub fn source(&self, wavelengths: &Wavelengths, ambient: Lanes) -> Lanes {
+        if !self.glows() && ambient == Lanes::ZERO {
             return Lanes::ZERO;
         }
         let sigma_a = self.sigma_a.lanes(wavelengths);
-        let sigma_t = sigma_a + self.sigma_s.lanes(wavelengths);
-        let share = Vec4::select(sigma_a.cmpgt(Vec4::ZERO), sigma_a / sigma_t, Vec4::ZERO);
-        self.emission.lanes(wavelengths) * share * (self.n * self.n)
+        let sigma_s = self.sigma_s.lanes(wavelengths);
+        let sigma_t = sigma_a + sigma_s;
+        let share = |sigma: Vec4| Vec4::select(sigma.cmpgt(Vec4::ZERO), sigma / sigma_t, Vec4::ZERO);
+        let added = self.emission.lanes(wavelengths) * share(sigma_a) + ambient * share(sigma_s);
+        added * (self.n * self.n)
     }
 }
 

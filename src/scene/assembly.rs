@@ -265,6 +265,10 @@ impl<'a> Assembly<'a> {
             emission: in_use().any(|(_, m)| m.glows()),
             spectral: self.world.mode == crate::spectrum::LaneMode::Spectral,
             diffuse,
+            specular: self.parts.pairs.keys().any(|p| !p.matched)
+                || self.parts.surfaces.iter().any(|s| matches!(s, Surface::Conductor { .. })),
+            sampled_lights: lights.are_sampled(),
+            constant_sky: lights.environment.is_constant_light(),
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }

@@ -21,11 +21,20 @@ pub struct Needs {
     pub spectral: bool,
     /// There are diffuse surfaces.
     pub diffuse: bool,
+    /// There are interfaces that refract, or metals.
+    pub specular: bool,
+    /// There are a sun, emitters, or a picture of the sky.
+    pub sampled_lights: bool,
+    /// The sky is the same from everywhere and not black.
+    pub constant_sky: bool,
     /// A sun shines on a refracting interface: its light beyond is left out.
     pub sun_behind_interface: bool,
 }
 
 impl Needs {
+    /// The part that only photons can be.
+    pub const SUN: &'static str = "sun through refracting interfaces";
+
     /// A line for each part: what is used or left out, and why.
     pub fn lines(&self) -> Vec<NeedLine> {
         let line = |part, used, because| NeedLine { part, used, because };
@@ -82,7 +91,7 @@ impl Needs {
                 },
             ),
             line(
-                "sun through refracting interfaces",
+                Self::SUN,
                 false,
                 if self.sun_behind_interface {
                     "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out"

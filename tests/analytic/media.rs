@@ -7,16 +7,16 @@ use super::estimates::{assert_every_pixel, assert_mean};
 use crate::common::mesh::{cuboid, parallelogram};
 use crate::common::scene::SceneFolder;
 
-const CUBE: &str = "[[surfaces]]\nmesh = \"cube.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"fluid\"\n\
+pub const CUBE: &str = "[[surfaces]]\nmesh = \"cube.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"fluid\"\n\
                     material = { kind = \"dielectric\" }\n";
 /// A view of the cube from outside.
-const OBLIQUE: &str =
+pub const OBLIQUE: &str =
     "[camera]\neye = [1.2, -3.5, 0.8]\ntarget = [0, 0, 0]\nvertical_fov = 40\nresolution = [12, 12]\n";
 /// A view along y of which all rays are parallel to 1e-5.
-const STRAIGHT: &str = "[camera]\neye = [0.05, -3.5, 0.03]\ntarget = [0.05, 0, 0.03]\nvertical_fov = 0.001\nresolution = [4, 4]\n";
+pub const STRAIGHT: &str = "[camera]\neye = [0.05, -3.5, 0.03]\ntarget = [0.05, 0, 0.03]\nvertical_fov = 0.001\nresolution = [4, 4]\n";
 
 /// Every kind of density.
-const DENSITIES: [&str; 4] = [
+pub const DENSITIES: [&str; 4] = [
     "",
     "density = { stratified = 0.4, surface = 0.7 }\n",
     "density = { stratified = -0.3 }\n",
@@ -24,7 +24,7 @@ const DENSITIES: [&str; 4] = [
 ];
 
 /// A `.npy` of single precision in Fortran order.
-fn npy(size: [usize; 3], value: impl Fn(usize) -> f32) -> Vec<u8> {
+pub fn npy(size: [usize; 3], value: impl Fn(usize) -> f32) -> Vec<u8> {
     let [x, y, z] = size;
     let header = format!("{{'descr': '<f4', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}\n");
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -40,7 +40,7 @@ fn plume_value(cell: usize) -> f32 {
 }
 
 /// The cube from -0.7 to 0.7 and a plume.
-fn folder() -> SceneFolder {
+pub fn folder() -> SceneFolder {
     let plume = npy([7, 9, 5], plume_value);
     SceneFolder::new()
         .mesh("cube.ply", &cuboid(DVec3::splat(-0.7), DVec3::splat(0.7)))

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod folders;
+mod integrators;
 #[path = "../small/mod.rs"]
 mod small;
 
@@ -136,6 +137,7 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "relative_error",
         "render_seconds",
         "samples",
+        "photons",
         "shadow_rays",
         "status",
         "trapped",

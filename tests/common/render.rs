@@ -4,8 +4,8 @@ use std::path::Path;
 
 use floe::driver::job::Job;
 use floe::driver::tiles::{Sampling, render_pixels};
-use floe::film::{Filter, FrameImage};
-use floe::integrator::{Counters, Integrator};
+use floe::film::FrameImage;
+use floe::integrator::Counters;
 use floe::sampling::SampleSeed;
 use floe::scene::assembly::FrameMesh;
 use floe::scene::frame::Frame;
@@ -32,13 +32,8 @@ pub fn prepare(file: &Path) -> Prepared {
         FrameMesh { path, mesh }
     });
     let assembled = job.world.assemble(task.number, mesh, None).unwrap_or_else(|e| panic!("{e}"));
-    let settings = &job.world.description.render;
-    let sampling = Sampling {
-        integrator: Integrator::new(settings),
-        filter: Filter::new(settings.filter),
-        samples: settings.samples,
-        seed: SampleSeed { seed: settings.seed, frame: task.number.millionths() },
-    };
+    let mut sampling = Sampling::new(&job.world.description.render);
+    sampling.seed.frame = task.number.millionths();
     Prepared { frame: assembled.frame, sampling }
 }
 

@@ -34,7 +34,6 @@ use trace::{Arrivals, Tracing};
 
 use super::Counters;
 use super::path::PathTracer;
-use crate::light::Environment;
 use crate::sampling::{SampleSeed, SampleStream};
 use crate::scene::description::{KernelKind, PhotonDescription};
 use crate::scene::frame::Frame;
@@ -97,10 +96,11 @@ impl PhotonMapper {
         let [width, height] = frame.camera.resolution();
         let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
         let count = if self.settings.count == 0 { pixels } else { self.settings.count };
-        let sky = Self::sky_emits(frame, self.settings.sky);
+        let environment = &frame.lights.environment;
+        let sky = environment.is_sampled() || (self.settings.sky && environment.is_constant_light());
         let takes = frame.needs.diffuse || frame.needs.scattering;
         let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());
-        let path_sky = matches!(&frame.lights.environment, Environment::Constant(c) if !c.is_zero()) && !sky;
+        let path_sky = environment.is_constant_light() && !sky;
         let mut prepared = PhotonFrame {
             mapper: *self,
             seed,
@@ -118,14 +118,6 @@ impl PhotonMapper {
         };
         prepared.run_pilots(frame);
         prepared
-    }
-
-    /// True when the sky emits photons: a picture, or a constant one that is asked to.
-    pub fn sky_emits(frame: &Frame, constant_too: bool) -> bool {
-        match &frame.lights.environment {
-            Environment::Constant(radiance) => constant_too && !radiance.is_zero(),
-            Environment::Image(_) => frame.lights.environment.is_sampled(),
-        }
     }
 }
 

@@ -70,7 +70,7 @@ impl Tracing<'_> {
             .into_par_iter()
             .map_init(Scratch::default, |scratch, batch| {
                 scratch.counters = Counters::default();
-                scratch.start(self.frame, self.wavelengths);
+                scratch.start(self.frame, self.wavelengths, Lanes::ZERO);
                 let range = batch * BATCH..((batch + 1) * BATCH).min(self.count);
                 let mut walk =
                     Walk { sample: self.sample(scratch), arrivals: Arrivals::default(), tracing: *self };

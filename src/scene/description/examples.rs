@@ -188,6 +188,9 @@ absorption = 0x10
 
 [sky]
 radiance = { wavelength = [380, 780], value = [1, +2.5e-1] }
+
+[render]
+integrator = "fog"
 "#;
 
 const PHASE_FUNCTIONS: &str = r#"
@@ -244,4 +247,7 @@ extinction = [80, 90, 100]
 albedo = 0.999
 emission = 0.0
 density = { stratified = 2 }
+
+[render]
+integrator = "single-scattering"
 "#;

@@ -385,6 +385,10 @@ pub enum IntegratorKind {
     Path,
     /// Progressive photon mapping.
     Photon,
+    /// Paths that turn at one particle at most.
+    SingleScattering,
+    /// Paths that turn at none: an ambient radiance is scattered in.
+    Fog,
     /// The open part of the hemisphere over what the camera sees.
     AmbientOcclusion,
 }

@@ -34,10 +34,12 @@ impl Default for PhotonDescription {
     }
 }
 
-const INTEGRATORS: [(&str, IntegratorKind); 4] = [
+const INTEGRATORS: [(&str, IntegratorKind); 6] = [
     ("auto", IntegratorKind::Auto),
     ("path", IntegratorKind::Path),
     ("photon", IntegratorKind::Photon),
+    ("single-scattering", IntegratorKind::SingleScattering),
+    ("fog", IntegratorKind::Fog),
     ("ambient-occlusion", IntegratorKind::AmbientOcclusion),
 ];
 

@@ -1,0 +1,123 @@
+//! What an integrator runs of what a frame needs, and what it leaves out.
+
+use super::{Integrator, Scattered};
+use crate::scene::needs::{NeedLine, Needs};
+
+impl Integrator {
+    /// What a picture of a frame with these needs lacks.
+    pub fn left_out(&self, needs: &Needs) -> Vec<&'static str> {
+        let of_scattering = match self {
+            Self::Path(tracer) => match tracer.scattered {
+                Scattered::Always => None,
+                Scattered::Once => Some("light scattered more than once"),
+                Scattered::Ambient => Some("all scattered light but an ambient one"),
+            },
+            Self::Photon(_) => return Vec::new(),
+            Self::AmbientOcclusion(_) => return vec!["all but the openness of the first surface"],
+        };
+        let of_the_sun = needs.sun_behind_interface.then_some("sunlight through refracting interfaces");
+        of_the_sun.into_iter().chain(of_scattering.filter(|_| needs.scattering)).collect()
+    }
+
+    /// A line for each part of the renderer: what runs or is left out, and why.
+    pub fn lines(&self, needs: &Needs) -> Vec<NeedLine> {
+        let met = self.meets(needs).lines();
+        let lines = needs.lines().into_iter().zip(met);
+        lines
+            .map(|(line, met)| match line.used && !met.used {
+                true => NeedLine { used: false, because: "the integrator does without", ..line },
+                false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_photons() => {
+                    NeedLine { used: true, because: "photons carry it", ..line }
+                }
+                false => line,
+            })
+            .chain(self.photon_lines(needs))
+            .collect()
+    }
+
+    fn has_photons(&self) -> bool {
+        matches!(self, Self::Photon(_))
+    }
+
+    /// A line for each photon map.
+    fn photon_lines(&self, needs: &Needs) -> [NeedLine; 3] {
+        let emits = match self {
+            Self::Photon(mapper) => Some(needs.sampled_lights || (needs.constant_sky && mapper.settings.sky)),
+            _ => None,
+        };
+        let takes = |part, needed: &[(bool, &'static str)], because| {
+            let lacking = needed.iter().find(|(is_there, _)| !is_there).map(|(_, why)| *why);
+            match (emits, lacking) {
+                (None, _) => NeedLine { part, used: false, because: "the integrator has no photons" },
+                (Some(false), _) => NeedLine { part, used: false, because: "no light emits photons" },
+                (Some(true), Some(why)) => NeedLine { part, used: false, because: why },
+                (Some(true), None) => NeedLine { part, used: true, because },
+            }
+        };
+        let diffuse = (needs.diffuse, "no diffuse surface takes them");
+        let specular = (needs.specular, "nothing bends or mirrors light");
+        let scattering = (needs.scattering, "no medium in the frame scatters");
+        [
+            takes("caustic photons", &[diffuse, specular], "specular surfaces turn light onto diffuse ones"),
+            takes("global photons", &[diffuse], "light is scattered onto diffuse surfaces"),
+            takes("volume photons", &[scattering], "a medium in the frame scatters"),
+        ]
+    }
+
+    /// The needs that this integrator meets.
+    fn meets(&self, needs: &Needs) -> Needs {
+        match self {
+            Self::Path(tracer) if tracer.scattered == Scattered::Ambient => {
+                Needs { scattering: false, direct_light: needs.direct_light && needs.diffuse, ..*needs }
+            }
+            Self::Path(_) | Self::Photon(_) => *needs,
+            Self::AmbientOcclusion(_) => Needs::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{AmbientOcclusion, PathTracer, PhotonMapper};
+    use super::*;
+    use crate::scene::description::PhotonDescription;
+
+    const PATH: PathTracer = PathTracer { max_depth: 0, split: 1, scattered: Scattered::Always };
+
+    fn used(integrator: &Integrator, needs: &Needs) -> Vec<&'static str> {
+        integrator.lines(needs).into_iter().filter(|line| line.used).map(|line| line.part).collect()
+    }
+
+    #[test]
+    fn what_an_integrator_does_without_is_left_out() {
+        let turbid = Needs { scattering: true, attenuation: true, direct_light: true, ..Needs::default() };
+        let sunny = Needs { sun_behind_interface: true, ..turbid };
+        let path = Integrator::Path(PATH);
+        let once = Integrator::Path(PathTracer { scattered: Scattered::Once, ..PATH });
+        let fog = Integrator::Path(PathTracer { scattered: Scattered::Ambient, ..PATH });
+        let openness = Integrator::AmbientOcclusion(AmbientOcclusion);
+        assert_eq!(path.lines(&sunny)[..sunny.lines().len()], sunny.lines());
+        assert_eq!(path.left_out(&sunny), ["sunlight through refracting interfaces"]);
+        assert_eq!(
+            once.left_out(&sunny),
+            ["sunlight through refracting interfaces", "light scattered more than once"]
+        );
+        assert_eq!(used(&once, &turbid), ["scattering", "transmittance", "next-event estimation"]);
+        assert_eq!(used(&fog, &turbid), ["transmittance"]);
+        assert_eq!(fog.left_out(&turbid), ["all scattered light but an ambient one"]);
+        let diffuse = Needs { diffuse: true, ..turbid };
+        assert_eq!(used(&fog, &diffuse), ["transmittance", "next-event estimation"]);
+        for integrator in [path, once, fog] {
+            assert!(integrator.left_out(&Needs::default()).is_empty(), "nothing scatters");
+        }
+        let photon = Integrator::Photon(PhotonMapper { path: PATH, settings: PhotonDescription::default() });
+        assert!(photon.left_out(&sunny).is_empty());
+        let maps =
+            |needs: &Needs| used(&photon, needs).into_iter().filter(|p| p.ends_with("photons")).count();
+        let lamp = Needs { sampled_lights: true, ..diffuse };
+        assert_eq!([maps(&diffuse), maps(&lamp), maps(&Needs { specular: true, ..lamp })], [0, 2, 3]);
+        assert_eq!(maps(&Needs { sampled_lights: true, specular: true, ..Needs::default() }), 0);
+        assert!(used(&path, &lamp).iter().all(|part| !part.ends_with("photons")));
+        assert!(used(&openness, &diffuse).is_empty() && openness.left_out(&Needs::default()).len() == 1);
+    }
+}
