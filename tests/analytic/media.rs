@@ -200,7 +200,7 @@ fn oblique_rays_through_a_grid_follow_its_quadrature() {
         let expected = DVec3::new((-0.5 * depth).exp(), (-2.0 * depth).exp(), 1.0);
         let name = format!("grid from {eye}");
         assert_every_pixel(&name, &render("absorption = [0.5, 2, 0]", 1), expected, 1e-5);
-        let samples = 256;
+        let samples = 1024;
         let alphas = render("scattering = 1", samples).image.pixels;
         let alpha = alphas.iter().map(|p| f64::from(p.alpha)).sum::<f64>() / 64.0;
         let share = -libm::expm1(-depth);
