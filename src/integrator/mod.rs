@@ -7,6 +7,7 @@ pub mod ambient_occlusion;
 pub mod counters;
 mod direct;
 mod flight;
+mod forced;
 mod left_out;
 pub mod path;
 pub mod scattered;
@@ -92,7 +93,12 @@ impl Integrator {
     /// What the scene asks for.
     pub fn new(settings: &RenderDescription) -> Self {
         let path = |scattered| {
-            Self::Path(PathTracer { max_depth: settings.max_depth, split: settings.split, scattered })
+            Self::Path(PathTracer {
+                max_depth: settings.max_depth,
+                split: settings.split,
+                forced: settings.forced_scattering,
+                scattered,
+            })
         };
         match settings.integrator {
             IntegratorKind::Auto | IntegratorKind::Path => path(Scattered::Always),

@@ -26,6 +26,8 @@ pub struct PathTracer {
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
+    /// Both what is scattered and what gets through are followed on this many ways through media that scatter.
+    pub forced: u32,
     /// What becomes of the light that particles scatter.
     pub scattered: Scattered,
 }
@@ -54,6 +56,7 @@ pub struct Branch {
     /// Interactions and index-matched boundaries.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
+    pub(super) forced_left: u32,
     /// How many particles it may still turn at.
     pub(super) scatterings_left: u32,
     pub(super) arrival: Arrival,
@@ -118,6 +121,7 @@ impl PathTracer {
             interactions: 0,
             steps: 0,
             splits_left: self.split,
+            forced_left: self.forced,
             scatterings_left: self.scattered.most(),
             arrival: Arrival { specular_from_eye: true, lit: None },
             clearing: Clearing::NONE,
@@ -161,7 +165,12 @@ impl Sample<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
-        match self.fly::<SCATTERING, VARIED>(branch, u[0]) {
+        let event = if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
+            self.fly_and_scatter::<DIRECT, VARIED>(branch)
+        } else {
+            self.fly::<SCATTERING, VARIED>(branch, u[0])
+        };
+        match event {
             Event::Surface(hit) => {
                 let hit = self.frame.geometry.surface_hit(&hit, branch.direction);
                 self.meet::<DIRECT>(branch, &hit, u)
@@ -175,7 +184,12 @@ impl Sample<'_> {
     }
 
     /// The path turns at a particle of the medium.
-    fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, distance: f32, u: [f32; 4]) -> Fate {
+    pub(super) fn scatter<const DIRECT: bool>(
+        &mut self,
+        branch: &mut Branch,
+        distance: f32,
+        u: [f32; 4],
+    ) -> Fate {
         if branch.throughput.max_element() <= 0.0 {
             return Fate::Ends;
         }
