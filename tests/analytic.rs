@@ -13,6 +13,7 @@ mod analytic {
     mod environment;
     mod estimates;
     mod fog;
+    mod forced_scattering;
     mod furnaces;
     mod half_space;
     mod lamps;

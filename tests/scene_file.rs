@@ -103,7 +103,10 @@ fn spectra_in_every_form() {
 #[test]
 fn media_in_every_notation() {
     let scene = example("turbid");
-    assert_eq!(scene.render.integrator, IntegratorKind::SingleScattering);
+    assert_eq!(
+        (scene.render.integrator, scene.render.forced_scattering),
+        (IntegratorKind::SingleScattering, 2)
+    );
     let media = scene.media;
     assert_eq!(media["lava"].emission, Spectrum::Planck { temperature: 1500.0 });
     let (min, max) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 4.0));
@@ -320,6 +323,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nseed = -1", 2, 8, "render.seed: -1: write a whole number from 0 to 18446744073709551615"),
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
     ("[render]\nsplit = 17", 2, 9, "render.split: 17: write a whole number from 0 to 16"),
+    ("[render]\nforced_scattering = 17", 2, 21, "render.forced_scattering: 17: write a whole number from 0 to 16"),
     ("[render]\nmax_depth = -1", 2, 13, "render.max_depth: -1: write a whole number from 0"),
     ("[output]\nexposure = 1000", 2, 12, "output.exposure: 1000: write a number of stops from -100 to 100"),
 ];

@@ -161,8 +161,10 @@ impl<'a> Session<'a> {
             ("maxDepth", s.max_depth.to_string()),
             ("split", s.split.to_string()),
         ]
+        .into_iter()
+        .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
         .map(|(name, value)| (format!("floe:{name}"), value))
-        .into()
+        .collect()
     }
 }
 

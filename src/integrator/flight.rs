@@ -75,7 +75,7 @@ impl Sample<'_> {
         u: f32,
     ) -> Event {
         let medium = self.scratch.media[branch.medium.0 as usize];
-        let turns = SCATTERING && medium.scatters && branch.scatterings_left > 0;
+        let turns = SCATTERING && self.turns(branch);
         let flight = turns.then(|| medium.free_flight(branch.throughput, u));
         let endless = Ray::new(branch.origin, branch.direction);
         let to_particle = flight.map_or(f32::INFINITY, |f| match VARIED {
@@ -92,11 +92,7 @@ impl Sample<'_> {
             return Event::Particle(to_particle);
         }
         let t_max = to_particle + rounding(branch.origin, to_particle);
-        let found = if VARIED {
-            self.nearest_and_glow(branch, &medium, t_max)
-        } else {
-            self.nearest(branch, &Ray { t_max, ..endless })
-        };
+        let found = self.nearest_on_way::<VARIED>(branch, &medium, t_max);
         if found.is_none()
             && let Some(flight) = &flight
             && to_particle.is_finite()
@@ -114,6 +110,26 @@ impl Sample<'_> {
         let Some(hit) = found else { return Event::Nothing };
         branch.clearing = Clearing::NONE;
         Event::Surface(hit)
+    }
+
+    /// True when a particle of its medium may turn the path.
+    #[inline]
+    pub(super) fn turns(&self, branch: &Branch) -> bool {
+        branch.scatterings_left > 0 && self.scratch.media[branch.medium.0 as usize].scatters
+    }
+
+    /// The next surface if it is nearer than `t_max`; what the medium adds on the way to it is added.
+    #[inline]
+    pub(super) fn nearest_on_way<const VARIED: bool>(
+        &mut self,
+        branch: &Branch,
+        medium: &MediumLanes,
+        t_max: f32,
+    ) -> Option<Hit> {
+        if VARIED {
+            return self.nearest_and_glow(branch, medium, t_max);
+        }
+        self.nearest(branch, &Ray { origin: branch.origin, direction: branch.direction, t_max })
     }
 
     /// The next surface if it is nearer than `t_max`, and what the medium adds on the way to it, however far it is.
@@ -138,7 +154,7 @@ impl Sample<'_> {
 
     /// Metres of density 1 along the path's ray up to a distance.
     #[inline]
-    fn length<const VARIED: bool>(&self, branch: &Branch, distance: f32) -> f32 {
+    pub(super) fn length<const VARIED: bool>(&self, branch: &Branch, distance: f32) -> f32 {
         if !VARIED {
             return distance;
         }

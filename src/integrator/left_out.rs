@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use crate::scene::description::PhotonDescription;
 
-    const PATH: PathTracer = PathTracer { max_depth: 0, split: 1, scattered: Scattered::Always };
+    const PATH: PathTracer = PathTracer { max_depth: 0, split: 1, forced: 0, scattered: Scattered::Always };
 
     fn used(integrator: &Integrator, needs: &Needs) -> Vec<&'static str> {
         integrator.lines(needs).into_iter().filter(|line| line.used).map(|line| line.part).collect()

@@ -8,6 +8,7 @@ pub mod counters;
 mod diffuse;
 mod direct;
 mod flight;
+mod forced;
 mod interface;
 mod left_out;
 pub mod path;
@@ -97,7 +98,12 @@ pub enum Integrator {
 impl Integrator {
     /// What the scene asks for.
     pub fn new(settings: &RenderDescription) -> Self {
-        let path = |scattered| PathTracer { max_depth: settings.max_depth, split: settings.split, scattered };
+        let path = |scattered| PathTracer {
+            max_depth: settings.max_depth,
+            split: settings.split,
+            forced: settings.forced_scattering,
+            scattered,
+        };
         match settings.integrator {
             IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path(Scattered::Always)),
             IntegratorKind::SingleScattering => Self::Path(path(Scattered::Once)),

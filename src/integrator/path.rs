@@ -27,6 +27,8 @@ pub struct PathTracer {
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
+    /// Both what is scattered and what gets through are followed on this many ways through media that scatter.
+    pub forced: u32,
     /// What becomes of the light that particles scatter.
     pub scattered: Scattered,
 }
@@ -57,6 +59,7 @@ pub struct Branch {
     /// Surfaces, index-matched boundaries too, since the last particle.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
+    pub(super) forced_left: u32,
     /// How many particles it may still turn at; beyond them media only attenuate.
     pub(super) scatterings_left: u32,
     /// Vertices at which it still asks for photons.
@@ -126,6 +129,7 @@ impl PathTracer {
             medium: frame.camera_medium,
             throughput: frame.mode.white(),
             splits_left: self.split,
+            forced_left: self.forced,
             scatterings_left: self.scattered.most() * u32::from(photons.is_none_or(|pass| pass.walks)),
             lookups_left: photons.map_or(0, |pass| pass.lookups),
             ..Branch::new(ray.origin, ray.direction, stream)
@@ -173,7 +177,12 @@ impl Sample<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
-        match self.fly::<SCATTERING, VARIED>(branch, u[0]) {
+        let event = if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
+            self.fly_and_scatter::<DIRECT, VARIED>(branch)
+        } else {
+            self.fly::<SCATTERING, VARIED>(branch, u[0])
+        };
+        match event {
             Event::Surface(hit) => {
                 let hit = self.frame.geometry.surface_hit(&hit, branch.direction);
                 self.meet::<DIRECT>(branch, &hit, u)
@@ -187,7 +196,12 @@ impl Sample<'_> {
     }
 
     /// The path turns at a particle of the medium.
-    fn scatter<const DIRECT: bool>(&mut self, branch: &mut Branch, distance: f32, u: [f32; 4]) -> Fate {
+    pub(super) fn scatter<const DIRECT: bool>(
+        &mut self,
+        branch: &mut Branch,
+        distance: f32,
+        u: [f32; 4],
+    ) -> Fate {
         if branch.throughput.max_element() <= 0.0 {
             return Fate::Ends;
         }
@@ -296,6 +310,7 @@ impl Branch {
             interactions: 0,
             steps: 0,
             splits_left: 0,
+            forced_left: 0,
             scatterings_left: u32::MAX,
             lookups_left: 0,
             arrival: Arrival { specular_from_eye: true, lit: None },

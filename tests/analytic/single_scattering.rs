@@ -87,9 +87,9 @@ fn a_slab_in_the_sun_scatters_once_what_the_closed_form_says() {
     let (mu, irradiance) = (0.8, 10.0);
     for slab in SLABS {
         let folder = SceneFolder::new().mesh("cube.ply", &slab.mesh());
-        for side in [1.0, -1.0] {
+        for (side, forced) in [(1.0, 0), (-1.0, 0), (1.0, 1), (-1.0, 1)] {
             let scene = folder.scene(&format!(
-                "{}{ONCE}{}[sun]\ndirection = [0, 0.6, 0.8]\nirradiance = {irradiance}\nangular_diameter = 0.05\n",
+                "{}{ONCE}forced_scattering = {forced}\n{}[sun]\ndirection = [0, 0.6, 0.8]\nirradiance = {irradiance}\nangular_diameter = 0.05\n",
                 slab.scene(),
                 vertical(side)
             ));
@@ -103,7 +103,7 @@ fn a_slab_in_the_sun_scatters_once_what_the_closed_form_says() {
                     scattered / (1.0 / mu - 1.0) * (libm::exp(-depth) - libm::exp(-depth / mu))
                 }
             });
-            let name = format!("sun on a slab of {} m, side {side}", slab.depth);
+            let name = format!("sun on a slab of {} m, side {side}, forced {forced}", slab.depth);
             assert_mean(&name, &scene.render(1024, 0), expected, 3e-2 * expected.max_element());
         }
     }

@@ -250,4 +250,5 @@ density = { stratified = 2 }
 
 [render]
 integrator = "single-scattering"
+forced_scattering = 2
 "#;

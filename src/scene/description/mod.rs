@@ -334,6 +334,8 @@ pub struct RenderDescription {
     pub max_depth: u32,
     /// Both branches are followed on the first `split` interface hits (1).
     pub split: u32,
+    /// Both what is scattered and what gets through are followed on the first so many ways through media (0).
+    pub forced_scattering: u32,
     /// Seed of every random number (0).
     pub seed: u64,
     /// Pixel filter (box).

@@ -12,6 +12,7 @@ impl Default for RenderDescription {
             samples: 64,
             max_depth: 0,
             split: 1,
+            forced_scattering: 0,
             seed: 0,
             filter: FilterKind::Box,
             photons: PhotonDescription::default(),
@@ -58,7 +59,7 @@ const KERNELS: [(&str, KernelKind); 3] = [
 /// Most photons in a pass: a map of them takes some 10 GB.
 const MOST_PHOTONS: i128 = 100_000_000;
 
-/// Most interface hits at which both branches are followed: the paths double at each.
+/// Most interface hits, and ways through media, at which both branches are followed: the paths double at each.
 const MOST_SPLITS: i128 = 16;
 
 /// Reads `[render]`.
@@ -73,6 +74,7 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
         samples: whole("samples", 1, u32::MAX.into(), default.samples)?,
         max_depth: whole("max_depth", 0, u32::MAX.into(), default.max_depth)?,
         split: whole("split", 0, MOST_SPLITS, default.split)?,
+        forced_scattering: whole("forced_scattering", 0, MOST_SPLITS, default.forced_scattering)?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
         filter: table.get("filter").map_or(Ok(default.filter), |v| v.choice(&FILTERS))?,
         photons: table.get("photons").map_or(Ok(default.photons), |v| photons(&v))?,
