@@ -25,7 +25,11 @@ type Pictures = BTreeMap<String, Vec<u8>>;
 
 /// Three frames of the same triangles: the first of the shipped sequence, and its vertices moved.
 fn wobbling() -> Folder {
-    let folder = Folder::with_scene(&shipped_scene(4));
+    wobbling_in(&shipped_scene(4))
+}
+
+fn wobbling_in(scene: &str) -> Folder {
+    let folder = Folder::with_scene(scene);
     let mesh = read(&shipped_frame(0)).unwrap();
     for number in 0..3 {
         folder.frame(number, &moved(&mesh, f64::from(number)));
@@ -73,6 +77,19 @@ fn threads_order_company_and_repetition_change_no_byte() {
     assert_eq!(alone, sequence, "frames alone, rebuilt");
     let different: std::collections::BTreeSet<_> = sequence.values().collect();
     assert_eq!(different.len(), 6, "the frames do differ");
+}
+
+/// Photons of the sun through moving water, in maps that several threads fill.
+#[test]
+fn photons_change_no_byte_either() {
+    let text = shipped_scene(4).replace("[render]\n", "[render]\nintegrator = \"photon\"\n");
+    let text = text.replace("scattering = 7 ", "scattering = 1 ");
+    let sun = "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n";
+    let folder = wobbling_in(&format!("{text}{sun}"));
+    let (sequence, refitted) = pictures(&folder, "0-2", 2);
+    assert_eq!((sequence.len(), refitted), (6, vec![false, true, true]));
+    assert_eq!(pictures(&folder, "0-2", 1).0, sequence, "one thread");
+    assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
 #[test]

@@ -101,6 +101,21 @@ fn spectra_in_every_form() {
 }
 
 #[test]
+fn photons_have_defaults_and_can_be_told() {
+    let photons = example("automatic camera").render.photons;
+    assert_eq!(
+        (photons.count, photons.radius, photons.volume_radius, photons.shrink),
+        (50_000, Some(0.1), Some(0.2), 0.8)
+    );
+    assert_eq!((photons.kernel, photons.final_gather), (KernelKind::Cone, false));
+    assert_eq!((photons.guide, photons.sky), (false, true));
+    let default = example("empty").render.photons;
+    assert_eq!((default.count, default.radius, default.volume_radius), (0, None, None));
+    assert_eq!((default.kernel, default.final_gather), (KernelKind::Epanechnikov, true));
+    assert_eq!((default.guide, default.sky), (true, false));
+}
+
+#[test]
 fn media_in_every_notation() {
     let scene = example("turbid");
     assert_eq!(
@@ -250,7 +265,9 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[camera]\nresolution = 640", 2, 14, "camera.resolution: 640: write width and height in pixels"),
     ("[camera]\nresolution = [640, 360, 1]", 2, 14, "write width and height in pixels"),
     ("[render]\nsamples = 64.0", 2, 11, "render.samples: 64.0: write a whole number from 1 to 4294967295"),
-    ("[render]\nintegrator = 'photon'", 2, 14, "write one of `auto`, `path`, `single-scattering`, `fog` and `ambient-occlusion`"),
+    ("[render]\nintegrator = 'bidirectional'", 2, 14, "write one of `auto`, `path`, `photon`, `single-scattering`, `fog` and `ambient-occlusion`"),
+    ("[render]\nphotons = 1000", 2, 11, "write a table such as { count = 100000, final_gather = true }"),
+    ("[render]\nphotons = { number = 1 }", 2, 13, "unknown key `number`"),
     ("[render]\nfilter = 1979-05-27", 2, 10, "write one of `box`, `gaussian` and `blackman-harris` in quotes"),
     ("[output]\npng = 'yes'", 2, 7, "output.png: 'yes': write true or false"),
     ("[output]\naovs = 'N'", 2, 8, "output.aovs: 'N': write a list such as"),
@@ -324,6 +341,12 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
     ("[render]\nsplit = 17", 2, 9, "render.split: 17: write a whole number from 0 to 16"),
     ("[render]\nforced_scattering = 17", 2, 21, "render.forced_scattering: 17: write a whole number from 0 to 16"),
+    ("[render]\nphotons = { count = 100000001 }", 2, 21, "render.photons.count: 100000001: write a whole number from 0 to 100000000"),
+    ("[render]\nphotons = { radius = 0 }", 2, 22, "render.photons.radius: 0: write a length from 1e-9 to 1e9 metres"),
+    ("[render]\nphotons = { volume_radius = nan }", 2, 29, "write a length from 1e-9 to 1e9 metres"),
+    ("[render]\nphotons = { shrink = 1.5 }", 2, 22, "render.photons.shrink: 1.5: write a number from 0.01 to 1"),
+    ("[render]\nphotons = { kernel = 'gaussian' }", 2, 22, "write one of `constant`, `cone` and `epanechnikov`"),
+    ("[render]\nphotons = { guide = 1 }", 2, 21, "render.photons.guide: 1: write true or false"),
     ("[render]\nmax_depth = -1", 2, 13, "render.max_depth: -1: write a whole number from 0"),
     ("[output]\nexposure = 1000", 2, 12, "output.exposure: 1000: write a number of stops from -100 to 100"),
 ];

@@ -178,6 +178,8 @@ filter = "gaussian"
 const AUTOMATIC_CAMERA: &str = r#"
 frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y" }
 camera = { resolution = [1920, 1080], vertical_fov = 30 }
+render.integrator = "photon"
+render.photons = { count = 50000, radius = 0.1, volume_radius = 0.2, shrink = 0.8, kernel = "cone", final_gather = false, guide = false, sky = true }
 output.png = false
 "#;
 
