@@ -108,11 +108,11 @@ fn photons_have_defaults_and_can_be_told() {
         (50_000, Some(0.1), Some(0.2), 0.8)
     );
     assert_eq!((photons.kernel, photons.final_gather), (KernelKind::Cone, false));
-    assert_eq!((photons.guide, photons.sky), (false, true));
+    assert_eq!((photons.guide, photons.sky), (false, Some(true)));
     let default = example("empty").render.photons;
     assert_eq!((default.count, default.radius, default.volume_radius), (0, None, None));
     assert_eq!((default.kernel, default.final_gather), (KernelKind::Epanechnikov, true));
-    assert_eq!((default.guide, default.sky), (true, false));
+    assert_eq!((default.guide, default.sky), (true, None));
 }
 
 #[test]

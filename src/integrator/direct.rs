@@ -27,11 +27,12 @@ pub(super) struct Receiver {
 }
 
 impl Sample<'_> {
-    /// Light from every kind of source; `response` gives value (cosine included) and density of the vertex's own
+    /// Light from every kind of source, or with `lamps` false from those alone that photons do not carry; `response` gives value (cosine included) and density of the vertex's own
     /// sampling for a direction.
     pub(super) fn direct(
         &mut self,
         receiver: &Receiver,
+        lamps: bool,
         response: impl Fn(Vec3) -> (Lanes, f32),
         stream: &mut SampleStream,
     ) -> Lanes {
@@ -39,20 +40,27 @@ impl Sample<'_> {
         let frame = self.frame;
         let lights = &frame.lights;
         let mut sum = Lanes::ZERO;
-        if let Some(sun) = &lights.sun {
+        if let Some(sun) = lights.sun.as_ref().filter(|_| lamps) {
             let light = sun.sample([u[0], u[1]], self.wavelengths);
             sum += self.contribution(receiver, &response, &light, |_| 1.0);
         }
-        if let Some(light) = lights.environment.sample([u[2], u[3]], self.wavelengths) {
+        if (lamps || self.sky_is_for_paths())
+            && let Some(light) = lights.environment.sample([u[2], u[3]], self.wavelengths)
+        {
             sum += self.contribution(receiver, &response, &light, |pdf_w| balance(light.pdf_w, pdf_w));
         }
-        if let Some(area) = &lights.area {
+        if let Some(area) = lights.area.as_ref().filter(|_| lamps) {
             let v = stream.next4();
             if let Some(light) = area.sample(receiver.position, [v[0], v[1], v[2]], self.wavelengths) {
                 sum += self.contribution(receiver, &response, &light, |pdf_w| balance(light.pdf_w, pdf_w));
             }
         }
         sum
+    }
+
+    /// True where eye paths find the light of the sky on their own.
+    pub(super) fn sky_is_for_paths(&self) -> bool {
+        self.photons.is_none_or(|pass| !pass.sky)
     }
 
     fn contribution(

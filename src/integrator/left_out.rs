@@ -42,7 +42,10 @@ impl Integrator {
     /// A line for each photon map.
     fn photon_lines(&self, needs: &Needs) -> [NeedLine; 3] {
         let emits = match self {
-            Self::Photon(mapper) => Some(needs.sampled_lights || (needs.constant_sky && mapper.settings.sky)),
+            Self::Photon(mapper) => Some(
+                needs.lamps
+                    || mapper.settings.sky.unwrap_or(needs.peaked_sky || (needs.scattering && needs.sky)),
+            ),
             _ => None,
         };
         let takes = |part, needed: &[(bool, &'static str)], because| {
@@ -114,9 +117,9 @@ mod tests {
         assert!(photon.left_out(&sunny).is_empty());
         let maps =
             |needs: &Needs| used(&photon, needs).into_iter().filter(|p| p.ends_with("photons")).count();
-        let lamp = Needs { sampled_lights: true, ..diffuse };
+        let lamp = Needs { lamps: true, ..diffuse };
         assert_eq!([maps(&diffuse), maps(&lamp), maps(&Needs { specular: true, ..lamp })], [0, 2, 3]);
-        assert_eq!(maps(&Needs { sampled_lights: true, specular: true, ..Needs::default() }), 0);
+        assert_eq!(maps(&Needs { lamps: true, specular: true, ..Needs::default() }), 0);
         assert!(used(&path, &lamp).iter().all(|part| !part.ends_with("photons")));
         assert!(used(&openness, &diffuse).is_empty() && openness.left_out(&Needs::default()).len() == 1);
     }

@@ -81,7 +81,7 @@ pub(super) struct Arrival {
 impl Arrival {
     /// True where light that photons carry is not theirs: straight from a vertex that was lit, or seen by the eye.
     pub(super) fn counts_lights(&self) -> bool {
-        self.specular_from_eye || self.lit.is_some()
+        self.specular_from_eye || self.lit.is_some_and(|vertex| vertex.lamps)
     }
 }
 
@@ -91,6 +91,8 @@ pub(super) struct LitVertex {
     pub(super) position: Vec3,
     /// Density with which the path's direction was drawn there.
     pub(super) pdf_w: f32,
+    /// It was lit by lamps too, not only by a sky that photons do not carry.
+    pub(super) lamps: bool,
 }
 
 /// Whether a branch goes on.
@@ -219,8 +221,9 @@ impl Sample<'_> {
         }
         let phase = &self.frame.medium(branch.medium).phase;
         let forward = branch.direction;
-        // Photons carry the light of all sources that are sampled, once it is scattered.
-        let lit = DIRECT && self.photons.is_none() && self.frame.looks_for_lights(branch.medium);
+        // The scattered light of lamps is that of photons, where there are any.
+        let lamps = self.photons.is_none();
+        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.frame.looks_for_lights(branch.medium);
         branch.lookups_left = 0;
         if lit {
             let receiver =
@@ -229,7 +232,7 @@ impl Sample<'_> {
                 let turned = Deflection::between(forward, wi);
                 (Lanes::splat(phase.value(turned)), phase.pdf_w(turned))
             };
-            let direct = self.direct(&receiver, response, &mut branch.stream);
+            let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
         let turned = phase.sample(forward, [u[1], u[2]]);
@@ -238,7 +241,7 @@ impl Sample<'_> {
         branch.origin = point;
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
-        let vertex = LitVertex { position: point, pdf_w: turned.pdf_w };
+        let vertex = LitVertex { position: point, pdf_w: turned.pdf_w, lamps };
         branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
         branch.steps = 0;
         branch.interacted(u[3])
@@ -258,7 +261,7 @@ impl Sample<'_> {
             .lit
             .map_or(1.0, |v| crate::light::balance(v.pdf_w, lights.environment.pdf_w(branch.direction)));
         let mut radiance = Lanes::ZERO;
-        if self.photons.is_none_or(|pass| !pass.sky || branch.arrival.counts_lights()) {
+        if self.sky_is_for_paths() || branch.arrival.counts_lights() {
             radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
         }
         if let Some(sun) = &lights.sun

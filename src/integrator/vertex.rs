@@ -94,10 +94,10 @@ impl Sample<'_> {
             None => lobe.pdf_w(wi),
             Some(guide) => lobe.weighted_pdf_w(wi, |direction| guide.relative(direction)),
         };
-        // With photons, a vertex beyond the last at which they were asked for has all its light from them.
-        let asks = self.photons.is_none_or(|_| branch.lookups_left > 0);
+        // Beyond the last vertex at which photons are asked for, the light of lamps is theirs.
+        let lamps = self.photons.is_none() || branch.lookups_left > 0;
         branch.lookups_left = branch.lookups_left.saturating_sub(1);
-        let lit = DIRECT && asks && self.frame.looks_for_lights(branch.medium);
+        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.frame.looks_for_lights(branch.medium);
         if lit {
             let receiver = Receiver {
                 position: hit.point.position,
@@ -106,7 +106,7 @@ impl Sample<'_> {
                 leaves: hit.triangle,
             };
             let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
-            let direct = self.direct(&receiver, response, &mut branch.stream);
+            let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
         let wi = match &guide {
@@ -115,8 +115,9 @@ impl Sample<'_> {
         };
         let own = pdf_w(wi);
         branch.throughput *= if guide.is_some() { albedo * (lobe.pdf_w(wi) / own) } else { albedo };
-        let vertex = LitVertex { position: hit.point.position, pdf_w: own };
-        let lit = lit || asks && self.photons.is_some();
+        let vertex = LitVertex { position: hit.point.position, pdf_w: own, lamps };
+        // A constant sky of photons is found by chance where it lights a surface straight.
+        let lit = lit || lamps && self.photons.is_some();
         branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
         branch.leave(hit, wi);
         branch.interacted(u[3])
@@ -134,14 +135,13 @@ impl Sample<'_> {
         if branch.lookups_left == 0 {
             return None;
         }
-        let mut reflected = photon::reflected(pass, &pass.caustic, pass.radii.caustic, hit);
+        let mut reflected = photon::reflected(pass, &pass.caustic, hit);
         let is_last = branch.lookups_left == 1;
         if is_last {
-            reflected += photon::reflected(pass, &pass.global, pass.radii.global, hit);
+            reflected += photon::reflected(pass, &pass.global, hit);
         }
         self.radiance += branch.throughput * albedo * reflected;
-        (pass.guide && !is_last && !pass.global.is_empty())
-            .then(|| Guide::new(&pass.global, pass.radii.global, hit))
+        (pass.guide && !is_last && !pass.global.is_empty()).then(|| Guide::new(&pass.global, hit))
     }
 
     fn reflect_on_metal(

@@ -15,6 +15,9 @@ use crate::sampling::{Distribution2d, warp};
 use crate::spectrum::light_primaries::radiance_lanes;
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths};
 
+/// A disc that has half of the light of an otherwise even sky reaches this at a diameter of 29 degrees.
+const PEAKED: f64 = 16.0;
+
 /// Light from infinity in all directions.
 #[derive(Clone, Debug)]
 pub enum Environment {
@@ -50,6 +53,14 @@ impl Environment {
     /// True when it is the same from everywhere and not black.
     pub fn is_constant_light(&self) -> bool {
         matches!(self, Self::Constant(radiance) if !radiance.is_zero())
+    }
+
+    /// True when a small part of the sphere has most of its light: chance that runs into it is noisy.
+    ///
+    /// That is where the mean square over the sphere is more than [`PEAKED`] times the squared mean, which is the relative
+    /// variance of a random direction, and 1.
+    pub fn is_peaked(&self) -> bool {
+        matches!(self, Self::Image(image) if contrast_of(&image.picture) > PEAKED)
     }
 
     /// True when next-event estimation looks for it.
@@ -167,6 +178,21 @@ fn distribution_of(picture: &Picture) -> Option<Distribution2d> {
     Distribution2d::new(width, &weights)
 }
 
+/// The mean square over the sphere, over the square of the mean; 0 for a black picture.
+fn contrast_of(picture: &Picture) -> f64 {
+    let (mut weight, mut mean, mut square) = (0.0, 0.0, 0.0);
+    for (j, row) in picture.texels.chunks(picture.width).enumerate() {
+        let sine = libm::sin(std::f64::consts::PI * (j as f64 + 0.5) / picture.height as f64);
+        for texel in row {
+            let brightness = f64::from(texel.element_sum());
+            weight += sine;
+            mean += sine * brightness;
+            square += sine * brightness * brightness;
+        }
+    }
+    if mean > 0.0 { square * weight / (mean * mean) } else { 0.0 }
+}
+
 /// The mean over the sphere of the interpolated picture.
 ///
 /// With h the height of a row and theta_j the polar angle of its centre, the integral of a row's tent times the sine is
@@ -197,6 +223,23 @@ mod tests {
 
     /// Against the midpoint rule over 400 x 800 directions, whose error for the kinks of a linear interpolation is a
     /// few of (1/400)^2: below 5e-5.
+    /// Half of the light from the share s of the sphere: (1 / s + 1 / (1 - s)) / 4 times the squared mean.
+    #[test]
+    fn a_sky_is_peaked_by_what_a_small_part_of_it_has() {
+        let (width, height) = (64, 512);
+        for (rows, peaked) in [(32, true), (48, false), (512, false)] {
+            let texels = |bright: f32| {
+                let row = move |j| Vec3::splat(if j < rows { bright } else { 1.0 });
+                (0..width * height).map(|i| row(i / width)).collect()
+            };
+            let share = 0.5 * (1.0 - (std::f64::consts::PI * rows as f64 / height as f64).cos());
+            let expected = if rows == height { 1.0 } else { 0.25 * (1.0 / share + 1.0 / (1.0 - share)) };
+            let picture = Picture { width, height, texels: texels(((1.0 - share) / share) as f32) };
+            assert!((contrast_of(&picture) / expected - 1.0).abs() < 1e-3, "{expected}");
+            assert_eq!(Environment::image(picture, Vec3::Z, LaneMode::Rgb).is_peaked(), peaked, "{expected}");
+        }
+    }
+
     #[test]
     fn the_mean_is_that_of_the_radiance_over_all_directions() {
         for (width, height) in [(1, 1), (3, 1), (5, 2), (4, 3), (8, 5)] {

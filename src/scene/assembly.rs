@@ -267,8 +267,9 @@ impl<'a> Assembly<'a> {
             diffuse,
             specular: self.parts.pairs.keys().any(|p| !p.matched)
                 || self.parts.surfaces.iter().any(|s| matches!(s, Surface::Conductor { .. })),
-            sampled_lights: lights.are_sampled(),
-            constant_sky: lights.environment.is_constant_light(),
+            lamps: lights.sun.is_some() || lights.area.is_some(),
+            sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
+            peaked_sky: lights.environment.is_peaked(),
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }

@@ -23,10 +23,12 @@ pub struct Needs {
     pub diffuse: bool,
     /// There are interfaces that refract, or metals.
     pub specular: bool,
-    /// There are a sun, emitters, or a picture of the sky.
-    pub sampled_lights: bool,
-    /// The sky is the same from everywhere and not black.
-    pub constant_sky: bool,
+    /// There are a sun or emitters.
+    pub lamps: bool,
+    /// The sky is not black.
+    pub sky: bool,
+    /// A small part of the sky has most of its light.
+    pub peaked_sky: bool,
     /// A sun shines on a refracting interface: its light beyond is left out.
     pub sun_behind_interface: bool,
 }

@@ -5,7 +5,7 @@
 //! ```
 //! * The sun and the sky: a direction from the light's own density, and a point on a disc perpendicular to it that covers
 //!   the scene. Where the scene reaches much farther than what the eye sees, points lie log-uniformly around that, so that
-//!   each octave of distance gets as many.
+//!   each octave of distance gets as many; those farther out are spread as much wider as their neighbours are farther away.
 //! * Emitting triangles: a point by power, and a direction in the cone around the sphere of all that does not emit; by the
 //!   cosine where the point is inside of it, or where the open air scatters.
 //!
@@ -61,6 +61,8 @@ pub(super) struct Emitted {
     pub(super) leaves: u32,
     pub(super) medium: MediumId,
     pub(super) flux: Lanes,
+    /// [`super::Photon::spread`]
+    pub(super) spread: f32,
 }
 
 /// The scene reaches much farther than what is seen from this ratio of their radii on.
@@ -128,12 +130,13 @@ impl Emission {
         wavelengths: &Wavelengths,
     ) -> Option<Emitted> {
         let basis = Basis::around(light.wi);
-        let (offset, pdf_a, near) = if self.scene.radius > FAR * self.seen.radius {
+        let (offset, pdf_a, near, spread) = if self.scene.radius > FAR * self.seen.radius {
             let (offset, pdf_a) = log_uniform_disc(u, self.seen.radius, 2.0 * self.scene.radius);
-            (offset, pdf_a, self.seen)
+            let relative = offset.length_squared() / (self.seen.radius * self.seen.radius);
+            (offset, pdf_a, self.seen, (1.0 + relative).sqrt())
         } else {
             let disc = warp::disc(u) * self.scene.radius;
-            (disc.extend(0.0), 1.0 / (PI * self.scene.radius * self.scene.radius), self.scene)
+            (disc.extend(0.0), 1.0 / (PI * self.scene.radius * self.scene.radius), self.scene, 1.0)
         };
         let mut origin = near.centre + basis.to_world(offset) + light.wi * near.radius;
         if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
@@ -144,7 +147,8 @@ impl Emission {
         let back = Ray::new(origin, light.wi);
         let arrives = open_air.lanes(wavelengths).transmittance(open_air.density.length(&back));
         let flux = light.radiance * arrives / (light.pdf_w * pdf_a);
-        let emitted = Emitted { origin, direction: -light.wi, leaves: u32::MAX, medium: MediumId(0), flux };
+        let emitted =
+            Emitted { origin, direction: -light.wi, leaves: u32::MAX, medium: MediumId(0), flux, spread };
         self.is_in_the_open(frame, &emitted).then_some(emitted)
     }
 
@@ -187,6 +191,7 @@ impl Emission {
             leaves: point.triangle,
             medium: self.starts[point.entry],
             flux: point.radiance * (cos / (point.pdf_a * pdf_w)),
+            spread: 1.0,
         })
     }
 }

@@ -4,10 +4,10 @@
 //! surface:  L = (albedo / pi) sum_p flux_p k(d_p / r) / (pi r^2)                              [JENSEN96 eq. 6]
 //! ray:      L = sum_p p(omega_p -> eye) T(t_p) flux_p k(d_p / r) / (pi r^2)                   [JAROSZ08 eq. 17]
 //! ```
-//! On a surface d is the distance to the photon, along a ray it is that of the photon to the ray, at distance t. A
+//! r is the photon's reach. On a surface d is the distance to the photon, along a ray it is that of the photon to the ray, at distance t. A
 //! photon counts only in the medium and on the side of the surface where it has arrived.
 
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
@@ -24,23 +24,21 @@ use crate::spectrum::Lanes;
 const SAME_SIDE: f32 = 0.5;
 
 /// Radiance that a surface of albedo 1 reflects of the photons of a map.
-pub(in crate::integrator) fn reflected(
-    pass: &PhotonPass,
-    map: &PhotonMap,
-    radius: f32,
-    hit: &SurfaceHit,
-) -> Lanes {
-    if map.is_empty() {
-        return Lanes::ZERO;
-    }
-    let inverse = 1.0 / (radius * radius);
+pub(in crate::integrator) fn reflected(pass: &PhotonPass, map: &PhotonMap, hit: &SurfaceHit) -> Lanes {
     let mut sum = Lanes::ZERO;
-    map.each_in_ball(hit.point.position, radius, |photon, squared| {
+    map.each_around(hit.point.position, 0.0, |photon, squared, reach| {
         if photon.normal.dot(hit.ng) > SAME_SIDE {
-            sum += photon.flux * profile(pass.kernel, squared * inverse);
+            sum += photon.flux * kernel(pass, squared, reach);
         }
     });
-    sum * (FRAC_1_PI * FRAC_1_PI * inverse)
+    sum * FRAC_1_PI
+}
+
+/// K in 1/m^2.
+#[inline]
+fn kernel(pass: &PhotonPass, squared: f32, reach: f32) -> f32 {
+    let inverse = 1.0 / (reach * reach);
+    profile(pass.kernel, squared * inverse) * (FRAC_1_PI * inverse)
 }
 
 impl Sample<'_> {
@@ -62,15 +60,13 @@ impl Sample<'_> {
         }
         let medium = self.scratch.media[branch.medium.0 as usize];
         let described = self.frame.medium(branch.medium);
-        let radius = pass.radii.volume;
-        let inverse = 1.0 / (radius * radius);
         let geometry = &self.frame.geometry;
         let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
         let slopes = [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction)));
-        let beyond = slopes.map(|slope| slope.map_or(0.0, |slope| radius * slope.length()));
+        let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length));
         let before = slopes[0].unwrap_or(Vec3::ZERO);
         let mut sum = Lanes::ZERO;
-        pass.volume.each_around_ray(ray, radius, beyond, |photon, along, squared| {
+        pass.volume.each_around_ray(ray, beyond, |photon, along, squared, reach| {
             if photon.medium != branch.medium {
                 return;
             }
@@ -78,9 +74,9 @@ impl Sample<'_> {
             let t_max = (along + before.dot(beside)).clamp(0.0, ray.t_max);
             let length = described.density.length(&Ray { t_max, ..*ray });
             let towards_eye = Deflection::between(photon.direction, -ray.direction);
-            let value = described.phase.value(towards_eye) * profile(pass.kernel, squared * inverse);
+            let value = described.phase.value(towards_eye) * kernel(pass, squared, reach);
             sum += photon.flux * medium.transmittance(length) * value;
         });
-        sum * (inverse / PI)
+        sum
     }
 }

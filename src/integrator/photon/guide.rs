@@ -33,10 +33,10 @@ pub(in crate::integrator) struct Guide {
 
 impl Guide {
     /// From the photons of a map around a surface point.
-    pub(in crate::integrator) fn new(map: &PhotonMap, radius: f32, hit: &SurfaceHit) -> Self {
+    pub(in crate::integrator) fn new(map: &PhotonMap, hit: &SurfaceHit) -> Self {
         let frame = Frame::around(hit.ns);
         let (mut flux, mut total, mut count) = ([0.0_f32; CELLS], 0.0, 0);
-        map.each_in_ball(hit.point.position, radius, |photon, _| {
+        map.each_around(hit.point.position, 0.0, |photon, _, _| {
             let local = frame.to_local(-photon.direction);
             if photon.normal.dot(hit.ng) > 0.0 && local.z > 0.0 {
                 let own = photon.flux.element_sum();
@@ -104,8 +104,9 @@ mod tests {
             normal: hit().ng,
             medium: MediumId(0),
             flux: Lanes::splat(1.0 + i as f32),
+            spread: 1.0,
         };
-        Guide::new(&PhotonMap::new(&(0..photons).map(photon).collect::<Vec<_>>()), 1.0, &hit())
+        Guide::new(&PhotonMap::new(&(0..photons).map(photon).collect::<Vec<_>>(), 1.0), &hit())
     }
 
     /// Cells of samples have the probabilities that `relative` states, within the strata of the numbers.

@@ -1,8 +1,9 @@
-//! Photons in space, asked for those in a ball or around a ray.
+//! Photons in space, asked for those around a point or around a ray.
 //!
+//! Each photon has a reach, the radius over which its flux is spread: the map's radius times the photon's own spread.
 //! Photons are sorted along a Morton curve and taken together by eight, and these groups by eight again, up to one root:
-//! a tree without pointers whose boxes lie in structures of arrays. Sorting by (place on the curve, number of the photon)
-//! makes the order, and with it every sum, independent of threads.
+//! a tree without pointers whose boxes, which hold the reaches, lie in structures of arrays. Sorting by (place on the
+//! curve, number of the photon) makes the order, and with it every sum, independent of threads.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -25,6 +26,9 @@ pub struct Photon {
     /// Flux in W (per nm where lanes are wavelengths) on the lanes. In a medium it is what is scattered there, before
     /// the phase function; on a surface what would be reflected by an albedo of 1.
     pub flux: Lanes,
+    /// How much wider than others it is spread, at least 1: photons that stand for much light, being emitted where there
+    /// are few, would be seen one by one.
+    pub spread: f32,
 }
 
 /// Children of a group.
@@ -32,7 +36,7 @@ const WIDTH: usize = 8;
 /// Groups waiting to be visited at most: seven left behind on each of eleven levels, which hold 2^33 photons.
 const STACK: usize = 80;
 
-/// Boxes of eight groups, or eight points.
+/// Boxes of eight groups, or of the reaches of eight photons.
 #[derive(Clone, Copy, Debug)]
 struct Group {
     min: [[f32; WIDTH]; 3],
@@ -43,13 +47,17 @@ struct Group {
 #[derive(Clone, Debug, Default)]
 pub struct PhotonMap {
     photons: Vec<Photon>,
-    /// Level 0 has the points of eight photons each, every other the boxes of eight groups below.
+    /// Level 0 has the reaches of eight photons each, every other the boxes of eight groups below.
     levels: Vec<Vec<Group>>,
+    /// Reach of a photon of spread 1, in metres.
+    radius: f32,
+    /// Greatest reach.
+    widest: f32,
 }
 
 impl PhotonMap {
-    /// A map of photons, whose order is part of the result.
-    pub fn new(photons: &[Photon]) -> Self {
+    /// A map of photons, whose order is part of the result, that are spread over `radius` metres times their own spread.
+    pub fn new(photons: &[Photon], radius: f32) -> Self {
         let bounds = Bounds::of_points(photons.iter().map(|p| p.position));
         let mut order: Vec<(u64, u32)> = photons
             .par_iter()
@@ -60,12 +68,13 @@ impl PhotonMap {
         let photons: Vec<Photon> = order.par_iter().map(|&(_, index)| photons[index as usize]).collect();
         let mut levels: Vec<Vec<Group>> = Vec::new();
         if !photons.is_empty() {
-            levels.push(photons.par_chunks(WIDTH).map(Group::of_points).collect());
+            levels.push(photons.par_chunks(WIDTH).map(|eight| Group::of_photons(eight, radius)).collect());
             while let Some(below) = levels.last().filter(|level| level.len() > 1) {
                 levels.push(below.chunks(WIDTH).map(Group::of_groups).collect());
             }
         }
-        Self { photons, levels }
+        let widest = photons.iter().map(|p| radius * p.spread).fold(0.0, f32::max);
+        Self { photons, levels, radius, widest }
     }
 
     /// How many photons there are.
@@ -83,35 +92,34 @@ impl PhotonMap {
         &self.photons
     }
 
-    /// Shows each photon within `radius` of a point with the square of its distance.
+    /// Shows each photon whose reach comes within `radius` of a point, with the square of its distance and its reach.
     #[inline]
-    pub fn each_in_ball(&self, centre: Vec3, radius: f32, mut visit: impl FnMut(&Photon, f32)) {
-        let reach = radius * radius;
+    pub fn each_around(&self, centre: Vec3, radius: f32, mut visit: impl FnMut(&Photon, f32, f32)) {
         self.walk(
             |group, out| group.squared_distances(centre, out),
-            reach,
+            (radius * radius).max(f32::MIN_POSITIVE),
             |photon| {
                 let squared = photon.position.distance_squared(centre);
-                if squared < reach {
-                    visit(photon, squared);
+                let reach = self.radius * photon.spread;
+                if squared < (radius + reach) * (radius + reach) {
+                    visit(photon, squared, reach);
                 }
             },
         );
     }
 
-    /// Shows each photon within `radius` of the line of a ray, and no more than `beyond` before its start and behind its
-    /// end, with the distance along the line and the square of that from it.
+    /// Shows each photon that reaches the line of a ray, with the distance along the line, the square of that from it,
+    /// and its reach.
+    ///
+    /// Photons may lie `beyond` times their reach before the start of the ray and behind its end.
     #[inline]
     pub fn each_around_ray(
         &self,
         ray: &Ray,
-        radius: f32,
         beyond: [f32; 2],
-        mut visit: impl FnMut(&Photon, f32, f32),
+        mut visit: impl FnMut(&Photon, f32, f32, f32),
     ) {
-        let reach = radius * radius;
-        let (first, last) = (-beyond[0], ray.t_max + beyond[1]);
-        let slabs = RaySlabs::new(ray, radius, [first, last]);
+        let slabs = RaySlabs::new(ray, [-beyond[0] * self.widest, ray.t_max + beyond[1] * self.widest]);
         self.walk(
             |group, out| group.entered(&slabs, out),
             0.5,
@@ -119,8 +127,10 @@ impl PhotonMap {
                 let to = photon.position - ray.origin;
                 let along = to.dot(ray.direction);
                 let squared = (to - ray.direction * along).length_squared();
-                if squared < reach && along > first && along < last {
-                    visit(photon, along, squared);
+                let reach = self.radius * photon.spread;
+                let is_beside = along > -beyond[0] * reach && along < ray.t_max + beyond[1] * reach;
+                if squared < reach * reach && is_beside {
+                    visit(photon, along, squared, reach);
                 }
             },
         );
@@ -155,34 +165,34 @@ impl PhotonMap {
     }
 }
 
-/// A ray as boxes see it that are wider by a radius on all sides.
+/// A ray as boxes see it.
 struct RaySlabs {
     origin: [f32; 3],
     inverse: [f32; 3],
-    radius: f32,
     /// Where it starts and ends.
     range: [f32; 2],
 }
 
 impl RaySlabs {
-    fn new(ray: &Ray, radius: f32, range: [f32; 2]) -> Self {
+    fn new(ray: &Ray, range: [f32; 2]) -> Self {
         // A direction along an axis gets a tiny component, so that no slab is 0 times infinity.
         let inverse =
             ray.direction.to_array().map(|d| 1.0 / if d.abs() < 1e-20 { 1e-20_f32.copysign(d) } else { d });
-        // By rounding the slabs of a box may just miss what lies on its rim.
-        Self { origin: ray.origin.to_array(), inverse, radius: radius * 1.0001, range }
+        Self { origin: ray.origin.to_array(), inverse, range }
     }
 }
 
 impl Group {
     const EMPTY: Self = Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3] };
 
-    fn of_points(photons: &[Photon]) -> Self {
+    fn of_photons(photons: &[Photon], radius: f32) -> Self {
         let mut group = Self::EMPTY;
         for (child, photon) in photons.iter().enumerate() {
+            // By rounding the slabs of a box may just miss what lies on its rim.
+            let reach = radius * photon.spread * 1.0001;
             for (axis, value) in photon.position.to_array().into_iter().enumerate() {
-                group.min[axis][child] = value;
-                group.max[axis][child] = value;
+                group.min[axis][child] = value - reach;
+                group.max[axis][child] = value + reach;
             }
         }
         group
@@ -216,8 +226,8 @@ impl Group {
         let mut far = [ray.range[1]; WIDTH];
         for axis in 0..3 {
             for child in 0..WIDTH {
-                let a = (self.min[axis][child] - ray.radius - ray.origin[axis]) * ray.inverse[axis];
-                let b = (self.max[axis][child] + ray.radius - ray.origin[axis]) * ray.inverse[axis];
+                let a = (self.min[axis][child] - ray.origin[axis]) * ray.inverse[axis];
+                let b = (self.max[axis][child] - ray.origin[axis]) * ray.inverse[axis];
                 near[child] = near[child].max(a.min(b));
                 far[child] = far[child].min(a.max(b));
             }
@@ -260,6 +270,7 @@ mod tests {
         Vec3::new(u[0], u[1], u[2] * u[2])
     }
 
+    /// Every fifth is spread three times as wide.
     fn photons(count: u32) -> Vec<Photon> {
         let photon = |i| Photon {
             position: number(i),
@@ -267,55 +278,64 @@ mod tests {
             normal: Vec3::ZERO,
             medium: MediumId(0),
             flux: Lanes::splat(i as f32),
+            spread: if i % 5 == 0 { 3.0 } else { 1.0 },
         };
         (0..count).map(photon).collect()
     }
 
+    fn names(photons: &[Photon], holds: impl Fn(&Photon) -> bool) -> Vec<u32> {
+        photons.iter().filter(|p| holds(p)).map(|p| p.flux.x as u32).collect()
+    }
+
     #[test]
-    fn balls_hold_what_is_in_them() {
+    fn points_are_reached_by_what_is_around_them() {
         for count in [0, 1, 7, 8, 9, 64, 65, 5000] {
             let photons = photons(count);
-            let map = PhotonMap::new(&photons);
-            assert_eq!(map.len(), count as usize);
-            for (i, radius) in [0.01, 0.1, 0.3, 2.0].into_iter().cycle().take(100).enumerate() {
-                let centre = number(90_000 + i as u32) * 1.2 - 0.1;
-                let mut found: Vec<u32> = Vec::new();
-                map.each_in_ball(centre, radius, |p, squared| {
-                    assert_eq!(squared, p.position.distance_squared(centre));
-                    found.push(p.flux.x as u32);
-                });
-                found.sort_unstable();
-                let near = |p: &&Photon| p.position.distance_squared(centre) < radius * radius;
-                let expected: Vec<u32> = photons.iter().filter(near).map(|p| p.flux.x as u32).collect();
-                assert_eq!(found, expected);
+            for (own, radius) in [(0.0, 0.1), (0.05, 0.0), (0.2, 0.1), (2.0, 0.0)] {
+                let map = PhotonMap::new(&photons, own);
+                assert_eq!(map.len(), count as usize);
+                for i in 0..50 {
+                    let centre = number(90_000 + i) * 1.2 - 0.1;
+                    let mut found: Vec<u32> = Vec::new();
+                    map.each_around(centre, radius, |p, squared, reach| {
+                        assert_eq!((squared, reach), (p.position.distance_squared(centre), own * p.spread));
+                        found.push(p.flux.x as u32);
+                    });
+                    found.sort_unstable();
+                    let expected = names(&photons, |p| {
+                        p.position.distance_squared(centre)
+                            < (radius + own * p.spread) * (radius + own * p.spread)
+                    });
+                    assert_eq!(found, expected);
+                }
             }
         }
     }
 
     #[test]
-    fn rays_meet_what_is_around_them() {
+    fn rays_are_reached_by_what_is_around_them() {
         let photons = photons(3000);
-        let map = PhotonMap::new(&photons);
         let axes = [Vec3::X, Vec3::NEG_Y, Vec3::Z];
         let mut met = 0;
-        for i in 0..300 {
-            let direction =
-                if i < 9 { axes[i as usize % 3] } else { (number(i) - number(i + 7000)).normalize() };
-            let t_max = if i % 3 == 0 { f32::INFINITY } else { 0.4 };
-            let ray = Ray { origin: number(40_000 + i) * 1.5 - 0.2, direction, t_max };
-            for (radius, beyond) in [(0.005, [0.0, 0.0]), (0.1, [0.0, 0.0]), (0.1, [0.1, 0.3])] {
+        for (own, beyond) in [(0.005, [0.0, 0.0]), (0.1, [0.0, 0.0]), (0.05, [1.0, 3.0])] {
+            let map = PhotonMap::new(&photons, own);
+            for i in 0..300 {
+                let direction =
+                    if i < 9 { axes[i as usize % 3] } else { (number(i) - number(i + 7000)).normalize() };
+                let t_max = if i % 3 == 0 { f32::INFINITY } else { 0.4 };
+                let ray = Ray { origin: number(40_000 + i) * 1.5 - 0.2, direction, t_max };
                 let mut found: Vec<u32> = Vec::new();
-                map.each_around_ray(&ray, radius, beyond, |p, _, _| found.push(p.flux.x as u32));
+                map.each_around_ray(&ray, beyond, |p, _, _, _| found.push(p.flux.x as u32));
                 found.sort_unstable();
-                let near = |p: &&Photon| {
-                    let to = p.position - ray.origin;
+                let expected = names(&photons, |p| {
+                    let (to, reach) = (p.position - ray.origin, own * p.spread);
                     let along = to.dot(direction);
                     let squared = (to - direction * along).length_squared();
-                    along > -beyond[0] && along < t_max + beyond[1] && squared < radius * radius
-                };
-                let expected: Vec<u32> = photons.iter().filter(near).map(|p| p.flux.x as u32).collect();
+                    let is_beside = along > -beyond[0] * reach && along < t_max + beyond[1] * reach;
+                    squared < reach * reach && is_beside
+                });
                 met += expected.len();
-                assert_eq!(found, expected, "{ray:?} {radius}");
+                assert_eq!(found, expected, "{ray:?} {own}");
             }
         }
         assert!(met > 1000, "{met} photons are too few for a test");
@@ -324,9 +344,9 @@ mod tests {
     #[test]
     fn photons_in_one_place_are_all_found() {
         let here = Photon { position: Vec3::ONE, ..photons(1)[0] };
-        let map = PhotonMap::new(&[here; 1000]);
+        let map = PhotonMap::new(&[here; 1000], 1e-6);
         let mut count = 0;
-        map.each_in_ball(Vec3::ONE, 1e-6, |_, _| count += 1);
+        map.each_around(Vec3::ONE, 0.0, |_, _, _| count += 1);
         assert_eq!(count, 1000);
     }
 }

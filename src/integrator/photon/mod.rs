@@ -5,15 +5,16 @@
 //!
 //! | light | found by |
 //! |---|---|
-//! | of photon lights (sun, emitters, pictures of the sky): seen through specular surfaces only | eye paths |
+//! | of photon lights (sun, emitters, mostly the sky): seen through specular surfaces only | eye paths |
 //! | straight onto a diffuse surface | next-event estimation |
 //! | turned by specular surfaces, then onto a diffuse surface | caustic photons |
 //! | scattered before, onto the first diffuse surface of an eye path | final gathering, or global photons |
 //! | ... onto the second one | global photons |
 //! | scattered in a medium | photons around the eye's rays, up to the last vertex at which photons are asked |
-//! | of a constant sky, and of media that emit | eye paths alone, which go on as in path tracing |
+//! | of any other sky, and of media that emit | eye paths alone, which go on as in path tracing |
 //!
-//! A constant sky is left to eye paths since chance is right there; `sky = true` makes photons of it too.
+//! Photons carry the light of the sky where a medium scatters, since eye paths would have to walk through it, and where
+//! a small part of the sky has most of its light; `sky = true` or `false` decides otherwise.
 
 pub(super) mod emission;
 pub(super) mod gather;
@@ -71,7 +72,6 @@ pub struct PhotonPass {
     pub(super) caustic: PhotonMap,
     pub(super) global: PhotonMap,
     pub(super) volume: PhotonMap,
-    pub(super) radii: Radii,
     pub(super) kernel: KernelKind,
     pub(super) guide: bool,
     /// Vertices at which an eye path asks for photons.
@@ -97,10 +97,11 @@ impl PhotonMapper {
         let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
         let count = if self.settings.count == 0 { pixels } else { self.settings.count };
         let environment = &frame.lights.environment;
-        let sky = environment.is_sampled() || (self.settings.sky && environment.is_constant_light());
+        let shines = environment.is_sampled() || environment.is_constant_light();
+        let sky = shines && self.settings.sky.unwrap_or(frame.needs.scattering || environment.is_peaked());
         let takes = frame.needs.diffuse || frame.needs.scattering;
         let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());
-        let path_sky = environment.is_constant_light() && !sky;
+        let path_sky = shines && !sky;
         let mut prepared = PhotonFrame {
             mapper: *self,
             seed,
@@ -127,12 +128,12 @@ impl PhotonFrame {
         let (wavelengths, stream) = self.numbers(frame, index);
         let arrivals = self.trace(frame, &wavelengths, self.count, &stream);
         let settings = &self.mapper.settings;
+        let radii = self.radii.shrunk(index, settings.shrink.into());
         let pass = PhotonPass {
             wavelengths,
-            caustic: PhotonMap::new(&arrivals.caustic),
-            global: PhotonMap::new(&arrivals.global),
-            volume: PhotonMap::new(&arrivals.volume),
-            radii: self.radii.shrunk(index, settings.shrink.into()),
+            caustic: PhotonMap::new(&arrivals.caustic, radii.caustic),
+            global: PhotonMap::new(&arrivals.global, radii.global),
+            volume: PhotonMap::new(&arrivals.volume, radii.volume),
             kernel: settings.kernel,
             guide: settings.guide,
             lookups: self.lookups,
@@ -185,7 +186,7 @@ impl PhotonFrame {
         let pilot = self.trace(frame, &wavelengths, count, &stream);
         // Photons of one pilot stand for so many photons of a pass.
         let share = count as f32 / self.count as f32;
-        let natural = |photons: &[Photon]| radius::natural(&PhotonMap::new(photons), share);
+        let natural = |photons: &[Photon]| radius::natural(photons, share);
         let settings = &self.mapper.settings;
         let widest = 0.1 * self.emission.as_ref().map_or(1.0, Emission::seen_radius);
         let or_widest = |given: Option<f32>, found: Option<f32>| {

@@ -8,7 +8,7 @@
 //!
 //! The first radius, unless the scene gives it, is the median distance of photons to the k-th nearest other one.
 
-use super::map::PhotonMap;
+use super::map::{Photon, PhotonMap};
 
 /// Photons that the first radius takes in on surfaces.
 const NEIGHBOURS: usize = 32;
@@ -46,8 +46,10 @@ fn shrinkage(pass: u32, alpha: f64) -> f64 {
 /// The median distance of photons to their k-th nearest neighbours, where k is 32 times `share` (at least 4), scaled
 /// to 32 times `share` of a plane; `None` with too few photons.
 ///
-/// `share` is the number of photons in the map over that of a whole pass.
-pub(super) fn natural(map: &PhotonMap, share: f32) -> Option<f32> {
+/// `share` is the number of photons over that of a whole pass. Where photons are spread unevenly those of spread 1 tell.
+pub(super) fn natural(photons: &[Photon], share: f32) -> Option<f32> {
+    let even: Vec<Photon> = photons.iter().filter(|p| p.spread < 1.5).copied().collect();
+    let map = &PhotonMap::new(&even, 0.0);
     let wanted = NEIGHBOURS as f32 * share;
     let k = (wanted.round() as usize).max(4);
     if map.len() <= 2 * k {
@@ -70,7 +72,7 @@ fn kth_distance(map: &PhotonMap, at: usize, k: usize) -> f32 {
     let mut squares = Vec::new();
     loop {
         squares.clear();
-        map.each_in_ball(centre, radius, |_, squared| squares.push(squared));
+        map.each_around(centre, radius, |_, squared, _| squares.push(squared));
         if squares.len() > k || !radius.is_finite() {
             break;
         }
@@ -83,7 +85,6 @@ fn kth_distance(map: &PhotonMap, at: usize, k: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::photon::map::Photon;
     use crate::optics::medium::MediumId;
     use crate::spectrum::Lanes;
     use glam::Vec3;
@@ -113,13 +114,14 @@ mod tests {
             normal: Vec3::Z,
             medium: MediumId(0),
             flux: Lanes::ONE,
+            spread: 1.0,
         };
-        let map = PhotonMap::new(&(0..10_000).map(photon).collect::<Vec<_>>());
+        let lattice: Vec<Photon> = (0..10_000).map(photon).collect();
         for share in [1.0, 0.5, 0.05] {
-            let radius = natural(&map, share).unwrap();
+            let radius = natural(&lattice, share).unwrap();
             let held = std::f32::consts::PI * radius * radius;
             assert!((held / (32.0 * share) - 1.0).abs() < 0.3, "{share}: {held}");
         }
-        assert!(natural(&PhotonMap::new(&[photon(1); 20]), 1.0).is_none());
+        assert!(natural(&[photon(1); 20], 1.0).is_none());
     }
 }

@@ -121,6 +121,7 @@ struct Walk<'a> {
 struct Flying {
     branch: Branch,
     scale: f32,
+    spread: f32,
     history: History,
 }
 
@@ -136,6 +137,7 @@ impl Walk<'_> {
                 ..Branch::new(start.origin, start.direction, stream)
             },
             scale,
+            spread: start.spread,
             history: History::Straight,
         };
         while self.advance(&mut flying) == Fate::GoesOn {}
@@ -286,6 +288,7 @@ impl Walk<'_> {
             normal: hit.ng,
             medium: branch.medium,
             flux: branch.throughput * flying.scale,
+            spread: flying.spread,
         };
         match flying.history {
             History::Straight => {}
@@ -314,6 +317,7 @@ impl Walk<'_> {
                 normal: Vec3::ZERO,
                 medium: branch.medium,
                 flux: branch.throughput * (flying.scale / share),
+                spread: flying.spread,
             });
         }
         if self.sample.is_spent(branch) {

@@ -361,8 +361,9 @@ pub struct PhotonDescription {
     pub final_gather: bool,
     /// The directions of photons draw those of final gathering (true).
     pub guide: bool,
-    /// A constant sky emits photons too (false).
-    pub sky: bool,
+    /// Photons carry the light of the sky; `None` decides by the scene: where a medium scatters,
+    /// or a small part of the sky has most of its light.
+    pub sky: Option<bool>,
 }
 
 /// `render.photons.kernel`

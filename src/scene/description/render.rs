@@ -30,7 +30,7 @@ impl Default for PhotonDescription {
             kernel: KernelKind::default(),
             final_gather: true,
             guide: true,
-            sky: false,
+            sky: None,
         }
     }
 }
@@ -98,7 +98,7 @@ fn photons(value: &Value<'_>) -> Result<PhotonDescription, SceneError> {
         kernel: table.get("kernel").map_or(Ok(default.kernel), |v| v.choice(&KERNELS))?,
         final_gather: flag("final_gather", default.final_gather)?,
         guide: flag("guide", default.guide)?,
-        sky: flag("sky", default.sky)?,
+        sky: table.get("sky").map(|v| v.boolean()).transpose()?,
     };
     table.finish()?;
     Ok(photons)
