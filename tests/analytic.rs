@@ -18,5 +18,7 @@ mod analytic {
     mod media;
     mod spectral;
     mod sunlight;
+    mod thick_media;
+    mod thick_media_measured;
     mod walls;
 }

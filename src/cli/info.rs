@@ -154,6 +154,13 @@ fn describe_frame(number: &str, assembled: &Assembled) -> String {
     for line in frame.needs.lines() {
         let _ = writeln!(text, "  {line}");
     }
+    for reduced in &assembled.reduced {
+        let _ = writeln!(
+            text,
+            "  {} scatters {:.4} as often: similarity of order {}, biased",
+            reduced.medium, reduced.alpha, reduced.order
+        );
+    }
     for warning in &assembled.warnings {
         let _ = writeln!(text, "  warning: {warning}");
     }

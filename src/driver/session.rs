@@ -160,6 +160,7 @@ impl<'a> Session<'a> {
             ("seed", s.seed.to_string()),
             ("maxDepth", s.max_depth.to_string()),
             ("split", s.split.to_string()),
+            ("similarity", s.similarity.to_string()),
         ]
         .map(|(name, value)| (format!("floe:{name}"), value))
         .into()
@@ -180,6 +181,9 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.refitted = assembled.update.hierarchy == Hierarchy::Refitted;
     record.cost_ratio = assembled.update.cost_ratio;
     record.warnings.clone_from(&assembled.warnings);
+    record.left_out.extend(assembled.reduced.iter().map(|reduced| {
+        format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
+    }));
     if frame.needs.sun_behind_interface {
         record.left_out.push("sunlight through refracting interfaces".into());
     }

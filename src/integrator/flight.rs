@@ -101,7 +101,9 @@ impl Sample<'_> {
             && to_particle.is_finite()
         {
             let point = endless.at(to_particle);
-            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            if !VARIED {
+                branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);
         }

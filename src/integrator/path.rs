@@ -28,12 +28,22 @@ pub struct PathTracer {
     pub split: u32,
 }
 
-/// From this interaction on a path survives with [`LATE_SURVIVAL`], whatever its throughput.
+/// From this meeting with a surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`],
+/// whatever its throughput.
 const LATE_ROULETTE: u32 = 1024;
-/// Probability of going on at each interaction beyond [`LATE_ROULETTE`].
+/// Probability of going on at each meeting beyond [`LATE_ROULETTE`].
 const LATE_SURVIVAL: f32 = 0.98;
-/// No path goes on beyond this many interactions.
+/// No path goes on beyond this many surfaces without a particle in between.
 pub const HARD_LIMIT: u32 = 65_536;
+/// From this interaction n on a path survives with 1 - 1 / n, so that of those which have come so far a share of
+/// `LONG_WALK / n` is left after n.
+///
+/// A walk that loses nothing leaves a half space after more than n steps with a chance like 1 / sqrt(n), and a slab after
+/// as many as its optical depth in the mean. So the roulette hardly touches bodies of less than a thousand mean free
+/// paths, and the mean length of walks without any way out is bounded.
+const LONG_WALK: u32 = 65_536;
+/// No path goes on beyond this many interactions.
+const LONGEST_WALK: u32 = 1 << 24;
 
 /// A path being followed.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +59,9 @@ pub struct Branch {
     /// The branch's share of the path at its splits, which roulette measures the throughput by.
     pub(super) share: f32,
     pub(super) interactions: u32,
-    /// Interactions and index-matched boundaries.
+    /// Those with surfaces since the last particle.
+    pub(super) bounces: u32,
+    /// The same with index-matched boundaries.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
     pub(super) arrival: Arrival,
@@ -112,6 +124,7 @@ impl PathTracer {
             index_factor: 1.0,
             share: 1.0,
             interactions: 0,
+            bounces: 0,
             steps: 0,
             splits_left: self.split,
             arrival: Arrival { specular_from_eye: true, lit: None },
@@ -151,7 +164,7 @@ impl Sample<'_> {
         &mut self,
         branch: &mut Branch,
     ) -> Fate {
-        if branch.steps >= HARD_LIMIT {
+        if branch.steps >= HARD_LIMIT || branch.interactions >= LONGEST_WALK {
             return self.cut(branch);
         }
         branch.steps += 1;
@@ -206,7 +219,8 @@ impl Sample<'_> {
         branch.leaves = u32::MAX;
         let vertex = LitVertex { position: point, pdf_w: turned.pdf_w };
         branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
-        branch.interacted(u[3])
+        (branch.bounces, branch.steps) = (0, 0);
+        branch.goes_on(u[3])
     }
 
     /// The path meets nothing any more: it sees the sky, and the sun's disc on a purely specular chain.
@@ -259,11 +273,18 @@ impl Sample<'_> {
 }
 
 impl Branch {
-    /// Counts an interaction and plays Russian roulette with `u`.
+    /// Counts an interaction with a surface and plays Russian roulette with `u`.
     pub(super) fn interacted(&mut self, u: f32) -> Fate {
+        self.bounces += 1;
+        self.goes_on(u)
+    }
+
+    /// Counts an interaction and plays Russian roulette with `u`.
+    #[inline]
+    fn goes_on(&mut self, u: f32) -> Fate {
         self.interactions += 1;
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
-        let late = if self.interactions >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        let late = self.late_survival();
         // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
         let survival = if kept >= 1.0 { late } else { kept * late };
         if survival >= 1.0 {
@@ -275,5 +296,15 @@ impl Branch {
         } else {
             Fate::Ends
         }
+    }
+
+    /// Probability of going on for paths that lose nothing.
+    #[inline]
+    fn late_survival(&self) -> f32 {
+        let mut survival = if self.bounces >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        if self.interactions >= LONG_WALK {
+            survival *= 1.0 - 1.0 / self.interactions as f32;
+        }
+        survival
     }
 }

@@ -334,6 +334,8 @@ pub struct RenderDescription {
     pub max_depth: u32,
     /// Both branches are followed on the first `split` interface hits (1).
     pub split: u32,
+    /// Order of the similarity relations that simplify scattering in thick media; 0 is exact (0).
+    pub similarity: u32,
     /// Seed of every random number (0).
     pub seed: u64,
     /// Pixel filter (box).

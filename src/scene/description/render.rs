@@ -3,6 +3,7 @@
 use super::error::SceneError;
 use super::value::Value;
 use super::{FilterKind, IntegratorKind, RenderDescription};
+use crate::optics::similarity::HIGHEST_ORDER;
 
 impl Default for RenderDescription {
     fn default() -> Self {
@@ -11,6 +12,7 @@ impl Default for RenderDescription {
             samples: 64,
             max_depth: 0,
             split: 1,
+            similarity: 0,
             seed: 0,
             filter: FilterKind::Box,
         }
@@ -44,6 +46,7 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
         samples: whole("samples", 1, u32::MAX.into(), default.samples)?,
         max_depth: whole("max_depth", 0, u32::MAX.into(), default.max_depth)?,
         split: whole("split", 0, MOST_SPLITS, default.split)?,
+        similarity: whole("similarity", 0, HIGHEST_ORDER as i128, default.similarity)?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
         filter: table.get("filter").map_or(Ok(default.filter), |v| v.choice(&FILTERS))?,
     };
