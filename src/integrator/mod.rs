@@ -3,12 +3,15 @@
 //! A tracer follows the light transport of one sample of one pixel: no threads, no film. It reads a
 //! [`crate::scene::frame::Frame`] and gives an [`EyeSample`].
 
+#![doc = include_str!("thick_media.md")]
+
 pub mod ambient_occlusion;
 pub mod counters;
 mod direct;
 mod flight;
 pub mod path;
 mod vertex;
+mod walk;
 
 use glam::Vec3;
 

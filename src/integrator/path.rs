@@ -22,7 +22,7 @@ use crate::spectrum::{Lanes, Wavelengths};
 /// Volumetric path tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathTracer {
-    /// Interactions along a path at most; 0 for no limit but [`HARD_LIMIT`].
+    /// Interactions along a path at most; 0 for no limit but [`HARD_LIMIT`] and that of the longest walks.
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
@@ -167,6 +167,16 @@ impl Sample<'_> {
         if branch.steps >= HARD_LIMIT || branch.interactions >= LONGEST_WALK {
             return self.cut(branch);
         }
+        if SCATTERING
+            && !VARIED
+            && branch.clearing.is_there()
+            && !(DIRECT && self.frame.looks_for_lights(branch.medium))
+        {
+            // The ball is left when the walk in it ends, or a flight of its own would end.
+            if self.walk(branch) == Fate::Ends {
+                return Fate::Ends;
+            }
+        }
         branch.steps += 1;
         let u = branch.stream.next4();
         match self.fly::<SCATTERING, VARIED>(branch, u[0]) {
@@ -281,7 +291,7 @@ impl Branch {
 
     /// Counts an interaction and plays Russian roulette with `u`.
     #[inline]
-    fn goes_on(&mut self, u: f32) -> Fate {
+    pub(super) fn goes_on(&mut self, u: f32) -> Fate {
         self.interactions += 1;
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
         let late = self.late_survival();
@@ -296,6 +306,12 @@ impl Branch {
         } else {
             Fate::Ends
         }
+    }
+
+    /// False where the path has to be cut.
+    #[inline]
+    pub(super) fn is_below_the_longest(&self) -> bool {
+        self.interactions < LONGEST_WALK
     }
 
     /// Probability of going on for paths that lose nothing.

@@ -45,11 +45,26 @@ pub struct MediumLanes {
     pub sigma_s: Lanes,
     /// Extinction (absorption and scattering) in 1/m.
     pub sigma_t: Lanes,
+    /// Least extinction of the lanes that carry light, in 1/m.
+    least: f32,
+    /// Scattering over that.
+    albedo: Lanes,
+    /// Extinction above that.
+    excess: Lanes,
     /// True when any lane scatters.
     pub scatters: bool,
     /// True when no lane loses anything.
     pub clear: bool,
+    /// True when all lanes that carry light have one extinction, but for [`GREY`] of it.
+    grey: bool,
 }
+
+/// Relative spread of extinctions below which all free flights are drawn from the least of them.
+///
+/// A collision's weight is then off by as much in each lane, and the product of n of them by sqrt(n) times as much: 3 % at
+/// a thousand collisions, a quarter where the roulette of long walks begins. In exchange a flight depends on nothing
+/// that the path has been through, and its lane need not be chosen: walks are twice as fast.
+const GREY: f32 = 1e-3;
 
 /// How far light goes before it meets a particle.
 ///
@@ -67,7 +82,20 @@ impl Medium {
     pub fn lanes(&self, wavelengths: &Wavelengths) -> MediumLanes {
         let sigma_s = self.sigma_s.lanes(wavelengths);
         let sigma_t = self.sigma_a.lanes(wavelengths) + sigma_s;
-        MediumLanes { sigma_s, sigma_t, scatters: sigma_s != Lanes::ZERO, clear: sigma_t == Lanes::ZERO }
+        let carries_light = if *wavelengths == Wavelengths::RGB { 3 } else { 4 };
+        let carried = &sigma_t.to_array()[..carries_light];
+        let least = carried.iter().fold(f32::INFINITY, |least, sigma_t| least.min(*sigma_t));
+        let most = carried.iter().fold(0.0, |most: f32, sigma_t| most.max(*sigma_t));
+        MediumLanes {
+            sigma_s,
+            sigma_t,
+            least,
+            albedo: sigma_s / least,
+            excess: (sigma_t - least).max(Vec4::ZERO),
+            scatters: sigma_s != Lanes::ZERO,
+            clear: sigma_t == Lanes::ZERO,
+            grey: least > 0.0 && most - least <= GREY * least,
+        }
     }
 
     /// True when it takes more from light in some places than in others.
@@ -112,9 +140,13 @@ impl MediumLanes {
         one_minus_exp4(Vec4::select(self.sigma_t.cmpeq(Vec4::ZERO), Vec4::ZERO, depth))
     }
 
-    /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`.
-    #[inline]
+    /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`; of nearly grey media in the
+    /// clearest one.
+    #[inline(always)]
     pub fn free_flight(&self, throughput: Lanes, u: f32) -> FreeFlight {
+        if self.grey {
+            return FreeFlight { distance: -ln(1.0 - u) / self.least, probabilities: Lanes::ZERO };
+        }
         let probabilities = throughput / throughput.element_sum();
         let mut lane = 0;
         let mut rest = u;
@@ -133,17 +165,35 @@ impl MediumLanes {
     }
 
     /// Weight of a path that scatters at the sampled distance: sigma_s T over the density summed over all lanes.
-    #[inline]
+    #[inline(always)]
     pub fn scatter_weight(&self, flight: &FreeFlight) -> Lanes {
+        if self.grey {
+            return self.albedo * self.relative_transmittance(flight.distance);
+        }
         let transmittance = self.transmittance(flight.distance);
         let pdf_d = (flight.probabilities * self.sigma_t * transmittance).element_sum();
         if pdf_d > 0.0 { self.sigma_s * transmittance / pdf_d } else { Lanes::ZERO }
+    }
+
+    /// exp(-(sigma_t - least sigma_t) d) of nearly grey media.
+    #[inline]
+    fn relative_transmittance(&self, distance: f32) -> Lanes {
+        /// The first term of the series that is left out is x^4 / 24: 7e-9.
+        const SMALL: f32 = 0.02;
+        let x = self.excess * distance;
+        if x.max_element() < SMALL {
+            return Vec4::ONE - x * (Vec4::ONE - x * (Vec4::splat(0.5) - x * (1.0 / 6.0)));
+        }
+        exp4(-Vec4::select(self.excess.cmpeq(Vec4::ZERO), Vec4::ZERO, x))
     }
 
     /// Weight of a path that reaches a surface at `distance`, nearer than the sampled one: T over the probability of
     /// getting that far, summed over all lanes.
     #[inline]
     pub fn pass_weight(&self, flight: &FreeFlight, distance: f32) -> Lanes {
+        if self.grey {
+            return self.relative_transmittance(distance);
+        }
         let transmittance = self.transmittance(distance);
         let probability = (flight.probabilities * transmittance).element_sum();
         if probability > 0.0 { transmittance / probability } else { Lanes::ZERO }
