@@ -199,3 +199,46 @@ impl MediumLanes {
         if probability > 0.0 { transmittance / probability } else { Lanes::ZERO }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Means over the random number are integrals over the distance: sigma_s / sigma_t of the weights of collisions, and
+    /// exp(-sigma_t d) of reaching d, in each lane. The midpoint rule over n numbers is good to 1 / n.
+    #[test]
+    fn flights_of_grey_and_coloured_media_have_the_means_of_every_lane() {
+        for (sigma_t, grey) in [([870.12_f32, 870.02, 870.0], true), ([900.0, 870.0, 600.0], false)] {
+            let curve = |values: [f32; 3]| LaneCurve::Rgb(Vec4::new(values[0], values[1], values[2], 0.0));
+            let medium = Medium {
+                name: "ice".into(),
+                n: 1.31,
+                sigma_a: curve(sigma_t.map(|s| s - 500.0)),
+                sigma_s: curve([500.0; 3]),
+                emission: LaneCurve::Constant(0.0),
+                phase: PhaseFunction::Isotropic(super::super::phase::Isotropic),
+                density: Density::Homogeneous,
+            };
+            let lanes = medium.lanes(&Wavelengths::RGB);
+            assert_eq!(lanes.grey, grey);
+            let (n, reach) = (100_000, 0.001);
+            let (mut collided, mut reached) = (Vec4::ZERO.as_dvec4(), Vec4::ZERO.as_dvec4());
+            for i in 0..n {
+                let u = (i as f32 + 0.5) / n as f32;
+                let flight = lanes.free_flight(Vec4::new(0.5, 1.0, 0.2, 0.0), u);
+                collided += lanes.scatter_weight(&flight).as_dvec4() / f64::from(n);
+                if flight.distance > reach {
+                    reached += lanes.pass_weight(&flight, reach).as_dvec4() / f64::from(n);
+                }
+            }
+            for lane in 0..3 {
+                let sigma_t = f64::from(sigma_t[lane]);
+                let expected = [500.0 / sigma_t, libm::exp(-sigma_t * f64::from(reach))];
+                for (mean, expected) in [collided[lane], reached[lane]].into_iter().zip(expected) {
+                    // Three lanes have three ends of the range and of the reach.
+                    assert!((mean - expected).abs() < 1e-4, "lane {lane}: {mean} {expected}");
+                }
+            }
+        }
+    }
+}

@@ -14,7 +14,7 @@ use crate::optics::similarity::Reduction;
 use crate::spectrum::LaneCurve;
 
 /// The reduced optical size from which on media are reduced; measured, see [`crate::integrator`].
-pub const THICK: f32 = 8.0;
+pub const THICK: f32 = 4.0;
 
 /// A medium whose scattering was replaced in a frame.
 #[derive(Clone, Debug, PartialEq)]

@@ -35,13 +35,11 @@ fn reduce(scene: &mut Prepared, name: &str, order: usize) -> f64 {
     alpha
 }
 
-/// Half of the view's angle.
-const HALF_ANGLE: f64 = 70.0;
-
-/// Mean over the directions of a view along the normal, weighted with their cosine, and its standard error.
-fn cosine_mean(picture: &Rendered) -> (f64, f64) {
+/// Mean over the directions of a view along the normal of so many degrees, weighted with their cosine, and its standard
+/// error.
+fn cosine_mean(picture: &Rendered, degrees: f64) -> (f64, f64) {
     let n = picture.image.width;
-    let tangent = HALF_ANGLE.to_radians().tan();
+    let tangent = (0.5 * degrees).to_radians().tan();
     let mut sums = (0.0, 0.0, 0.0);
     for (pixel, i) in picture.image.pixels.iter().zip(0..) {
         let [x, y] = [i % n, i / n].map(|k| ((2.0 * f64::from(k) + 1.0) / f64::from(n) - 1.0) * tangent);
@@ -60,26 +58,25 @@ fn cosine_mean(picture: &Rendered) -> (f64, f64) {
 #[ignore = "minutes"]
 fn what_similarity_does_to_layers() {
     let folder = tray();
-    for (ior, (view, z, lost), tau) in [1.0, 1.31].into_iter().flat_map(|ior| {
-        [("T", -2, 0.0), ("R", 2, 0.01)]
-            .into_iter()
-            .flat_map(move |view| [1.0, 2.0, 4.0, 8.0, 16.0].map(|tau| (ior, view, tau)))
-    }) {
+    let layers = [("T", -2, 0.0), ("R", 2, 0.01)]
+        .into_iter()
+        .flat_map(|view| [0.25, 0.5, 1.0, 2.0, 4.0, 8.0].map(|tau| (view, tau)));
+    let views = [1.0, 1.31].into_iter().flat_map(|ior| [140.0, 10.0].map(|degrees| (ior, degrees)));
+    for ((ior, degrees), ((view, z, lost), tau)) in views.flat_map(|v| layers.clone().map(move |l| (v, l))) {
         let mean = |order: usize| {
             let mut scene = folder.scene(&format!(
                 "[media.milk]\nior = {ior}\nscattering = {}\nabsorption = {}\n\
                  phase = {{ kind = \"henyey-greenstein\", g = 0.86 }}\n{LAYER}{TRAY}\
                  [camera]\neye = [0.3, 0.2, {z}]\ntarget = [0.3, 0.2, 0]\nup = [0, 1, 0]\n\
-                 vertical_fov = {}\nresolution = [64, 64]\n",
+                 vertical_fov = {degrees}\nresolution = [64, 64]\n",
                 tau / 0.14,
-                tau * lost,
-                2.0 * HALF_ANGLE
+                tau * lost
             ));
             reduce(&mut scene, "milk", order);
-            cosine_mean(&scene.render(256, order as u64))
+            cosine_mean(&scene.render(128, order as u64), degrees)
         };
         let exact = mean(0);
-        let mut line = format!("ior {ior}, {view}, tau* {tau}: {:.4}", exact.0);
+        let mut line = format!("ior {ior}, {degrees} degrees, {view}, tau* {tau}: {:.4}", exact.0);
         for (value, se) in (1..=3).map(mean) {
             let off = 100.0 * (value / exact.0 - 1.0);
             line += &format!(" | {off:+.2} ({:.2})", 100.0 * (se / exact.0).hypot(exact.1 / exact.0));

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod folders;
+mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
 
