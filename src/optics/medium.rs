@@ -63,7 +63,7 @@ pub struct MediumLanes {
 ///
 /// A collision's weight is then off by as much in each lane, and the product of n of them by sqrt(n) times as much: 3 % at
 /// a thousand collisions, a quarter where the roulette of long walks begins. In exchange a flight depends on nothing
-/// that the path has been through, and its lane need not be chosen: walks are twice as fast.
+/// that the path has been through, and its lane need not be chosen: walks are 1.6 times as fast.
 const GREY: f32 = 1e-3;
 
 /// How far light goes before it meets a particle.
