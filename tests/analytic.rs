@@ -22,5 +22,7 @@ mod analytic {
     mod single_scattering;
     mod spectral;
     mod sunlight;
+    mod thick_media;
+    mod thick_media_measured;
     mod walls;
 }

@@ -161,6 +161,13 @@ fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) 
     if !left_out.is_empty() {
         let _ = writeln!(text, "  left out: {}", left_out.join(", "));
     }
+    for reduced in &assembled.reduced {
+        let _ = writeln!(
+            text,
+            "  {} scatters {:.4} as often: similarity of order {}, biased",
+            reduced.medium, reduced.alpha, reduced.order
+        );
+    }
     for warning in &assembled.warnings {
         let _ = writeln!(text, "  warning: {warning}");
     }

@@ -160,6 +160,7 @@ impl<'a> Session<'a> {
             ("seed", s.seed.to_string()),
             ("maxDepth", s.max_depth.to_string()),
             ("split", s.split.to_string()),
+            ("similarity", s.similarity.to_string()),
         ]
         .into_iter()
         .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
@@ -182,6 +183,9 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.refitted = assembled.update.hierarchy == Hierarchy::Refitted;
     record.cost_ratio = assembled.update.cost_ratio;
     record.warnings.clone_from(&assembled.warnings);
+    record.left_out.extend(assembled.reduced.iter().map(|reduced| {
+        format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
+    }));
 }
 
 fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescription {

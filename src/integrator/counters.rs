@@ -30,14 +30,15 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Greatest part of the rays that may be label mismatches in a sound frame.
+    /// Greatest part of the rays, and of the flights that needed none, that may be label mismatches in a sound frame.
     pub const MISMATCH_LIMIT: f64 = 1e-6;
 
     /// True when so many labels disagree that the mesh cannot be what it says.
     ///
     /// A handful is allowed whatever the number of rays: below it a rate means nothing.
     pub fn too_many_mismatches(&self) -> bool {
-        let allowed = (self.rays as f64 * Self::MISMATCH_LIMIT).max(8.0);
+        let flights = (self.rays + self.untraced) as f64;
+        let allowed = (flights * Self::MISMATCH_LIMIT).max(8.0);
         self.label_mismatches as f64 > allowed
     }
 }

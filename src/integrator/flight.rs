@@ -35,9 +35,15 @@ impl Clearing {
     /// A ball of fewer mean free paths is soon left: the next is looked for later.
     const WORTH_A_SEARCH: f32 = 4.0;
 
+    /// False without a ball.
     #[inline]
-    fn holds(&self, point: Vec3) -> bool {
+    pub(super) fn holds(&self, point: Vec3) -> bool {
         self.radius > 0.0 && point.distance_squared(self.centre) < self.radius * self.radius
+    }
+
+    #[inline]
+    pub(super) fn is_there(&self) -> bool {
+        self.radius > 0.0
     }
 
     /// The path has collided at a point outside of the ball.
@@ -50,7 +56,8 @@ impl Clearing {
             self.radius = accel.clearance(point) - rounding(point, 0.0);
             self.collisions = 0;
             let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
-            self.patience = if is_large { Self::FIRST_PATIENCE } else { 2 * self.patience };
+            // Who has left a large ball is deep in the medium still.
+            self.patience = if is_large { 1 } else { 2 * self.patience };
         }
     }
 }
@@ -98,7 +105,9 @@ impl Sample<'_> {
             && to_particle.is_finite()
         {
             let point = endless.at(to_particle);
-            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            if !VARIED {
+                branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);
         }

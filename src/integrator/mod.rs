@@ -3,6 +3,8 @@
 //! A tracer follows the light transport of one sample of one pixel: no threads, no film. It reads a
 //! [`crate::scene::frame::Frame`] and gives an [`EyeSample`].
 
+#![doc = include_str!("thick_media.md")]
+
 pub mod ambient_occlusion;
 pub mod counters;
 mod diffuse;
@@ -15,6 +17,7 @@ pub mod path;
 pub mod photon;
 pub mod scattered;
 mod vertex;
+mod walk;
 
 use glam::Vec3;
 

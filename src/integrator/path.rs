@@ -23,7 +23,7 @@ use crate::spectrum::{Lanes, Wavelengths};
 /// Volumetric path tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathTracer {
-    /// Interactions along a path at most; 0 for no limit but [`HARD_LIMIT`].
+    /// Interactions along a path at most; 0 for no limit but [`HARD_LIMIT`] and that of the longest walks.
     pub max_depth: u32,
     /// Both branches are followed at this many interfaces.
     pub split: u32,
@@ -33,14 +33,22 @@ pub struct PathTracer {
     pub scattered: Scattered,
 }
 
-/// From this surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`], whatever its throughput.
+/// From this meeting with a surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`],
+/// whatever its throughput.
 const LATE_ROULETTE: u32 = 1024;
-/// Probability of going on at each interaction beyond [`LATE_ROULETTE`].
+/// Probability of going on at each meeting beyond [`LATE_ROULETTE`].
 const LATE_SURVIVAL: f32 = 0.98;
 /// No path goes on beyond this many surfaces without a particle in between.
 pub const HARD_LIMIT: u32 = 65_536;
-/// No path goes on beyond this many interactions: a slab of optical depth 1000 lets go of all but 1e-8 before.
-const LONGEST_WALK: u32 = 1 << 22;
+/// From this interaction n on a path survives with 1 - 1 / n, so that of those which have come so far a share of
+/// `LONG_WALK / n` is left after n.
+///
+/// A walk that loses nothing leaves a half space after more than n steps with a chance like 1 / sqrt(n), and a slab after
+/// as many as its optical depth in the mean. So the roulette hardly touches bodies of less than a thousand mean free
+/// paths, and the mean length of walks without any way out is bounded.
+const LONG_WALK: u32 = 65_536;
+/// No path goes on beyond this many interactions.
+const LONGEST_WALK: u32 = 1 << 24;
 
 /// A path being followed.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +64,9 @@ pub struct Branch {
     /// The branch's share of the path at its splits, which roulette measures the throughput by.
     pub(super) share: f32,
     pub(super) interactions: u32,
-    /// Surfaces, index-matched boundaries too, since the last particle.
+    /// Those with surfaces since the last particle.
+    pub(super) bounces: u32,
+    /// The same with index-matched boundaries.
     pub(super) steps: u32,
     pub(super) splits_left: u32,
     pub(super) forced_left: u32,
@@ -177,6 +187,16 @@ impl Sample<'_> {
         if branch.steps >= HARD_LIMIT || branch.interactions >= LONGEST_WALK {
             return self.cut(branch);
         }
+        if SCATTERING
+            && !VARIED
+            && branch.clearing.is_there()
+            && !(DIRECT && self.frame.looks_for_lights(branch.medium))
+        {
+            // The ball is left when the walk in it ends, or a flight of its own would end.
+            if self.walk(branch) == Fate::Ends {
+                return Fate::Ends;
+            }
+        }
         branch.steps += 1;
         let u = branch.stream.next4();
         let event = if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
@@ -243,8 +263,8 @@ impl Sample<'_> {
         branch.leaves = u32::MAX;
         let vertex = LitVertex { position: point, pdf_w: turned.pdf_w, lamps };
         branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
-        branch.steps = 0;
-        branch.interacted(u[3])
+        (branch.bounces, branch.steps) = (0, 0);
+        branch.goes_on(u[3])
     }
 
     /// The path meets nothing any more: it sees the sky, and the sun's disc on a purely specular chain.
@@ -311,6 +331,7 @@ impl Branch {
             index_factor: 1.0,
             share: 1.0,
             interactions: 0,
+            bounces: 0,
             steps: 0,
             splits_left: 0,
             forced_left: 0,
@@ -322,11 +343,18 @@ impl Branch {
         }
     }
 
-    /// Counts an interaction and plays Russian roulette with `u`.
+    /// Counts an interaction with a surface and plays Russian roulette with `u`.
     pub(super) fn interacted(&mut self, u: f32) -> Fate {
+        self.bounces += 1;
+        self.goes_on(u)
+    }
+
+    /// Counts an interaction and plays Russian roulette with `u`.
+    #[inline]
+    pub(super) fn goes_on(&mut self, u: f32) -> Fate {
         self.interactions += 1;
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
-        let late = if self.steps >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        let late = self.late_survival();
         // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
         let survival = if kept >= 1.0 { late } else { kept * late };
         if survival >= 1.0 {
@@ -338,5 +366,21 @@ impl Branch {
         } else {
             Fate::Ends
         }
+    }
+
+    /// False where the path has to be cut.
+    #[inline]
+    pub(super) fn is_below_the_longest(&self) -> bool {
+        self.interactions < LONGEST_WALK
+    }
+
+    /// Probability of going on for paths that lose nothing.
+    #[inline]
+    fn late_survival(&self) -> f32 {
+        let mut survival = if self.bounces >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        if self.interactions >= LONG_WALK {
+            survival *= 1.0 - 1.0 / self.interactions as f32;
+        }
+        survival
     }
 }

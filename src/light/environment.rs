@@ -233,8 +233,9 @@ mod tests {
                 (0..width * height).map(|i| row(i / width)).collect()
             };
             let share = 0.5 * (1.0 - (std::f64::consts::PI * rows as f64 / height as f64).cos());
+            let bright = if rows == height { 1.0 } else { (1.0 - share) / share };
             let expected = if rows == height { 1.0 } else { 0.25 * (1.0 / share + 1.0 / (1.0 - share)) };
-            let picture = Picture { width, height, texels: texels(((1.0 - share) / share) as f32) };
+            let picture = Picture { width, height, texels: texels(bright as f32) };
             assert!((contrast_of(&picture) / expected - 1.0).abs() < 1e-3, "{expected}");
             assert_eq!(Environment::image(picture, Vec3::Z, LaneMode::Rgb).is_peaked(), peaked, "{expected}");
         }

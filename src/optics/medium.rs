@@ -46,11 +46,26 @@ pub struct MediumLanes {
     pub sigma_s: Lanes,
     /// Extinction (absorption and scattering) in 1/m.
     pub sigma_t: Lanes,
+    /// Least extinction of the lanes that carry light, in 1/m.
+    least: f32,
+    /// Scattering over that.
+    albedo: Lanes,
+    /// Extinction above that.
+    excess: Lanes,
     /// True when any lane scatters.
     pub scatters: bool,
     /// True when no lane loses anything.
     pub clear: bool,
+    /// True when all lanes that carry light have one extinction, but for [`GREY`] of it.
+    grey: bool,
 }
+
+/// Relative spread of extinctions below which all free flights are drawn from the least of them.
+///
+/// A collision's weight is then off by as much in each lane, and the product of n of them by sqrt(n) times as much: 3 % at
+/// a thousand collisions, a quarter where the roulette of long walks begins. In exchange a flight depends on nothing
+/// that the path has been through, and its lane need not be chosen: walks are 1.6 times as fast.
+const GREY: f32 = 1e-3;
 
 /// How far light goes before it meets a particle.
 ///
@@ -68,7 +83,20 @@ impl Medium {
     pub fn lanes(&self, wavelengths: &Wavelengths) -> MediumLanes {
         let sigma_s = self.sigma_s.lanes(wavelengths);
         let sigma_t = self.sigma_a.lanes(wavelengths) + sigma_s;
-        MediumLanes { sigma_s, sigma_t, scatters: sigma_s != Lanes::ZERO, clear: sigma_t == Lanes::ZERO }
+        let carries_light = if *wavelengths == Wavelengths::RGB { 3 } else { 4 };
+        let carried = &sigma_t.to_array()[..carries_light];
+        let least = carried.iter().fold(f32::INFINITY, |least, sigma_t| least.min(*sigma_t));
+        let most = carried.iter().fold(0.0, |most: f32, sigma_t| most.max(*sigma_t));
+        MediumLanes {
+            sigma_s,
+            sigma_t,
+            least,
+            albedo: sigma_s / least,
+            excess: (sigma_t - least).max(Vec4::ZERO),
+            scatters: sigma_s != Lanes::ZERO,
+            clear: sigma_t == Lanes::ZERO,
+            grey: least > 0.0 && most - least <= GREY * least,
+        }
     }
 
     /// True when it takes more from light in some places than in others.
@@ -127,9 +155,13 @@ impl MediumLanes {
         one_minus_exp4(Vec4::select(self.sigma_t.cmpeq(Vec4::ZERO), Vec4::ZERO, depth))
     }
 
-    /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`.
-    #[inline]
+    /// Samples a distance in one lane, chosen in proportion to `throughput` `[WILKIE14]`; of nearly grey media in the
+    /// clearest one.
+    #[inline(always)]
     pub fn free_flight(&self, throughput: Lanes, u: f32) -> FreeFlight {
+        if self.grey {
+            return FreeFlight { distance: -ln(1.0 - u) / self.least, probabilities: Lanes::ZERO };
+        }
         let probabilities = throughput / throughput.element_sum();
         let (lane, u) = pick(probabilities, u);
         let sigma_t = self.sigma_t[lane];
@@ -137,9 +169,15 @@ impl MediumLanes {
         FreeFlight { distance, probabilities }
     }
 
+    /// 1 in the clearest lanes, 0 in others.
+    fn clearest(&self) -> Lanes {
+        Vec4::select(self.sigma_t.cmpeq(Vec4::splat(self.least)), Vec4::ONE, Vec4::ZERO)
+    }
+
     /// Samples a distance below `length` as [`MediumLanes::free_flight`] does, on condition that it is below.
     pub fn free_flight_within(&self, throughput: Lanes, length: f32, u: f32) -> FreeFlight {
-        let probabilities = throughput / throughput.element_sum();
+        let weights = if self.grey { self.clearest() } else { throughput };
+        let probabilities = weights / weights.element_sum();
         let opacity = self.opacity(length);
         let (lane, u) = pick(probabilities * opacity / (probabilities * opacity).element_sum(), u);
         let sigma_t = self.sigma_t[lane];
@@ -148,17 +186,35 @@ impl MediumLanes {
     }
 
     /// Weight of a path that scatters at the sampled distance: sigma_s T over the density summed over all lanes.
-    #[inline]
+    #[inline(always)]
     pub fn scatter_weight(&self, flight: &FreeFlight) -> Lanes {
+        if self.grey {
+            return self.albedo * self.relative_transmittance(flight.distance);
+        }
         let transmittance = self.transmittance(flight.distance);
         let pdf_d = (flight.probabilities * self.sigma_t * transmittance).element_sum();
         if pdf_d > 0.0 { self.sigma_s * transmittance / pdf_d } else { Lanes::ZERO }
+    }
+
+    /// exp(-(sigma_t - least sigma_t) d) of nearly grey media.
+    #[inline]
+    fn relative_transmittance(&self, distance: f32) -> Lanes {
+        /// The first term of the series that is left out is x^4 / 24: 7e-9.
+        const SMALL: f32 = 0.02;
+        let x = self.excess * distance;
+        if x.max_element() < SMALL {
+            return Vec4::ONE - x * (Vec4::ONE - x * (Vec4::splat(0.5) - x * (1.0 / 6.0)));
+        }
+        exp4(-Vec4::select(self.excess.cmpeq(Vec4::ZERO), Vec4::ZERO, x))
     }
 
     /// Weight of a path that reaches a surface at `distance`, nearer than the sampled one: T over the probability of
     /// getting that far, summed over all lanes.
     #[inline]
     pub fn pass_weight(&self, flight: &FreeFlight, distance: f32) -> Lanes {
+        if self.grey {
+            return self.relative_transmittance(distance);
+        }
         let transmittance = self.transmittance(distance);
         let probability = (flight.probabilities * transmittance).element_sum();
         if probability > 0.0 { transmittance / probability } else { Lanes::ZERO }
@@ -185,26 +241,76 @@ fn pick(weights: Lanes, u: f32) -> (usize, f32) {
 mod tests {
     use super::*;
 
+    /// What is not scattered is absorbed.
+    fn lanes_of(sigma_t: [f32; 3], sigma_s: f32) -> MediumLanes {
+        let curve = |values: [f32; 3]| LaneCurve::Rgb(Vec4::new(values[0], values[1], values[2], 0.0));
+        let medium = Medium {
+            name: "ice".into(),
+            n: 1.31,
+            sigma_a: curve(sigma_t.map(|s| s - sigma_s)),
+            sigma_s: curve([sigma_s; 3]),
+            emission: LaneCurve::Constant(0.0),
+            phase: PhaseFunction::Isotropic(super::super::phase::Isotropic),
+            density: Density::Homogeneous,
+        };
+        medium.lanes(&Wavelengths::RGB)
+    }
+
     /// The share of the distances below x is that which free flights have below x, over that below the length.
     #[test]
     fn flights_within_a_length_are_free_flights_that_end_there() {
-        let sigma_t = Vec4::new(0.01, 0.5, 3.0, 0.0);
-        let medium = MediumLanes { sigma_s: sigma_t, sigma_t, scatters: true, clear: false };
-        let throughput = Vec4::new(3.0, 1.0, 0.5, 2.0);
-        for length in [0.01, 1.0, 100.0, f32::INFINITY] {
-            // 4096 midpoints in three lanes miss a share by at most a point in each.
-            let flights: Vec<FreeFlight> = (0..4096)
-                .map(|i| medium.free_flight_within(throughput, length, (i as f32 + 0.5) / 4096.0))
-                .collect();
-            for x in [0.1, 0.3, 0.9].map(|share: f32| share * length.min(200.0)) {
-                let below = flights.iter().filter(|f| f.distance < x).count() as f32 / 4096.0;
-                let within = |d| flights[0].probability_within(&medium, d);
-                let expected = within(x) / within(length);
-                assert!((below - expected).abs() < 3.0 / 4096.0, "{length} {x}: {below} {expected}");
+        for sigma_t in [[0.01, 0.5, 3.0], [3.0, 3.001, 3.002]] {
+            let medium = lanes_of(sigma_t, 0.01);
+            let throughput = Vec4::new(3.0, 1.0, 0.5, 0.0);
+            for length in [0.01, 1.0, 100.0, f32::INFINITY] {
+                // 4096 midpoints in three lanes miss a share by at most a point in each.
+                let flights: Vec<FreeFlight> = (0..4096)
+                    .map(|i| medium.free_flight_within(throughput, length, (i as f32 + 0.5) / 4096.0))
+                    .collect();
+                for x in [0.1, 0.3, 0.9].map(|share: f32| share * length.min(200.0)) {
+                    let below = flights.iter().filter(|f| f.distance < x).count() as f32 / 4096.0;
+                    let within = |d| flights[0].probability_within(&medium, d);
+                    let expected = within(x) / within(length);
+                    assert!((below - expected).abs() < 3.0 / 4096.0, "{length} {x}: {below} {expected}");
+                }
+                let both = flights[0].probability_within(&medium, length)
+                    + flights[0].probability_beyond(&medium, length);
+                assert!((both - 1.0).abs() < 1e-6 && flights.iter().all(|f| f.distance <= length));
+                // The weights of what is scattered within, and of what passes, are those of each lane.
+                let scattered: Vec4 = flights.iter().map(|f| medium.scatter_weight(f)).sum();
+                let scattered = scattered * flights[0].probability_within(&medium, length) / 4096.0;
+                let expected = medium.sigma_s / medium.sigma_t * medium.opacity(length);
+                let off = ((scattered - expected) / expected).truncate().abs();
+                assert!(off.max_element() < 4e-3, "{sigma_t:?} {length}: {scattered} {expected}");
             }
-            let both = flights[0].probability_within(&medium, length)
-                + flights[0].probability_beyond(&medium, length);
-            assert!((both - 1.0).abs() < 1e-6 && flights.iter().all(|f| f.distance <= length));
+        }
+    }
+
+    /// Means over the random number are integrals over the distance: sigma_s / sigma_t of the weights of collisions, and
+    /// exp(-sigma_t d) of reaching d, in each lane. The midpoint rule over n numbers is good to 1 / n.
+    #[test]
+    fn flights_of_grey_and_coloured_media_have_the_means_of_every_lane() {
+        for (sigma_t, grey) in [([870.12_f32, 870.02, 870.0], true), ([900.0, 870.0, 600.0], false)] {
+            let lanes = lanes_of(sigma_t, 500.0);
+            assert_eq!(lanes.grey, grey);
+            let (n, reach) = (100_000, 0.001);
+            let (mut collided, mut reached) = (Vec4::ZERO.as_dvec4(), Vec4::ZERO.as_dvec4());
+            for i in 0..n {
+                let u = (i as f32 + 0.5) / n as f32;
+                let flight = lanes.free_flight(Vec4::new(0.5, 1.0, 0.2, 0.0), u);
+                collided += lanes.scatter_weight(&flight).as_dvec4() / f64::from(n);
+                if flight.distance > reach {
+                    reached += lanes.pass_weight(&flight, reach).as_dvec4() / f64::from(n);
+                }
+            }
+            for lane in 0..3 {
+                let sigma_t = f64::from(sigma_t[lane]);
+                let expected = [500.0 / sigma_t, libm::exp(-sigma_t * f64::from(reach))];
+                for (mean, expected) in [collided[lane], reached[lane]].into_iter().zip(expected) {
+                    // Three lanes have three ends of the range and of the reach.
+                    assert!((mean - expected).abs() < 1e-4, "lane {lane}: {mean} {expected}");
+                }
+            }
         }
     }
 }

@@ -13,6 +13,7 @@ pub mod medium;
 pub mod phase;
 pub mod refraction;
 pub mod refractive_index;
+pub mod similarity;
 pub mod volume;
 pub mod water;
 

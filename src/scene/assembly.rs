@@ -11,6 +11,7 @@ use super::geometry::Geometry;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
 use super::surface::{Surface, SurfaceId};
+use super::thick::{self, Reduced};
 use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
 use crate::light::area::EmitterTriangle;
@@ -31,6 +32,8 @@ pub struct Assembled {
     pub labelled: bool,
     /// What became of the hierarchy of the frame before.
     pub update: Update,
+    /// Media whose scattering was replaced.
+    pub reduced: Vec<Reduced>,
     /// What the user should look at.
     pub warnings: Vec<String>,
 }
@@ -194,8 +197,9 @@ impl<'a> Assembly<'a> {
         self.parts.push_surface(Surface::Diffuse { reflectance })
     }
 
-    fn finish(self, media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
+    fn finish(self, mut media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
         let world = self.world;
+        let reduced = self.reduce(&mut media);
         let lights = Lights {
             environment: world.environment.clone(),
             sun: world.sun.clone(),
@@ -210,7 +214,8 @@ impl<'a> Assembly<'a> {
         };
         let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
         let lit = self.lit(&lights);
-        let needs = self.needs(&media, &lights, &lit, camera_medium);
+        let needs =
+            Needs { similarity: !reduced.is_empty(), ..self.needs(&media, &lights, &lit, camera_medium) };
         Assembled {
             frame: Frame {
                 mode: world.mode,
@@ -230,8 +235,16 @@ impl<'a> Assembly<'a> {
             interfaces: self.interfaces,
             labelled: self.labelled,
             update,
+            reduced,
             warnings: self.parts.warnings,
         }
+    }
+
+    fn reduce(&self, media: &mut [Medium]) -> Vec<Reduced> {
+        let Parts { geometry, surfaces, .. } = &self.parts;
+        let order = self.world.description.render.similarity;
+        let extent = |id| thick::least_extent(id, geometry, surfaces);
+        thick::reduce(media, &self.world.reductions, order, &self.endless, extent)
     }
 
     fn area_lights(&self) -> Option<AreaLights> {
@@ -270,6 +283,7 @@ impl<'a> Assembly<'a> {
             lamps: lights.sun.is_some() || lights.area.is_some(),
             sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
             peaked_sky: lights.environment.is_peaked(),
+            similarity: false,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }

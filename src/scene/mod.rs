@@ -14,6 +14,7 @@ pub mod geometry;
 pub mod needs;
 mod parts;
 pub mod surface;
+pub mod thick;
 pub mod world;
 
 pub use error::FrameError;

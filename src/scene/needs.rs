@@ -29,6 +29,8 @@ pub struct Needs {
     pub sky: bool,
     /// A small part of the sky has most of its light.
     pub peaked_sky: bool,
+    /// Scattering in thick media was replaced by what is similar from afar: the picture is biased.
+    pub similarity: bool,
     /// A sun shines on a refracting interface: its light beyond is left out.
     pub sun_behind_interface: bool,
 }
@@ -90,6 +92,15 @@ impl Needs {
                     "some boundaries are index-matched"
                 } else {
                     "no boundary is index-matched"
+                },
+            ),
+            line(
+                "similarity reduction (biased)",
+                self.similarity,
+                if self.similarity {
+                    "render.similarity is set and a medium is thick: it scatters less often and wider than it says"
+                } else {
+                    "render.similarity is 0, or no medium is thick and scatters forward"
                 },
             ),
             line(

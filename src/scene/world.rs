@@ -18,6 +18,7 @@ use crate::mesh::{self, Region};
 use crate::optics::RefractiveIndex;
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
+use crate::optics::similarity::Reduction;
 use crate::sequence::{FrameNumber, has_place};
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum};
 
@@ -34,6 +35,8 @@ pub struct World {
     pub camera: Camera,
     /// Media by [`MediumId`]; the first is that of region 0.
     pub media: Vec<Medium>,
+    /// What takes the place of the media's scattering in frames where they are thick, if the scene asks for it.
+    pub(super) reductions: Vec<Option<Reduction>>,
     /// The sky.
     pub environment: Environment,
     /// The sun.
@@ -63,8 +66,11 @@ impl World {
             let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
             Sun::new(sun.direction, sun.angular_diameter, irradiance)
         });
+        let order = description.render.similarity as usize;
+        let reductions = media.iter().map(|medium| Reduction::of(&medium.phase, order)).collect();
         let still = Parts::default();
-        let mut world = Self { description, mode, origin, camera, media, environment, sun, still, names };
+        let mut world =
+            Self { description, mode, origin, camera, media, reductions, environment, sun, still, names };
         world.still = world.still_parts()?;
         Ok(world)
     }

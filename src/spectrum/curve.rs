@@ -67,6 +67,15 @@ impl LaneCurve {
         }
     }
 
+    /// The least value that any lane can take.
+    pub fn minimum(&self) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Rgb(lanes) => lanes.truncate().min_element(),
+            Self::Sampled(table) => table.iter().fold(f32::INFINITY, |least, value| least.min(*value)),
+        }
+    }
+
     /// True when no lane can be anything but zero.
     pub fn is_zero(&self) -> bool {
         match self {

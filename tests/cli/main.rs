@@ -3,6 +3,7 @@
 
 mod folders;
 mod integrators;
+mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
 

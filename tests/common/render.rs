@@ -40,7 +40,7 @@ pub fn prepare(file: &Path) -> Prepared {
 impl Prepared {
     /// Renders with so many samples a pixel.
     ///
-    /// A point in a medium may lie on the wrong side of a surface by its rounding, so about one ray in a million may find
+    /// A point in a medium may lie on the wrong side of a surface by its rounding, so about one flight in a million may find
     /// another medium than it expects.
     ///
     /// # Panics
@@ -50,7 +50,7 @@ impl Prepared {
         let sampling = Sampling { samples, seed, ..self.sampling.clone() };
         let (image, counters) = render_pixels(&self.frame, &sampling, &|_, _| ());
         let rare = counters.label_mismatches + counters.escaped_inside;
-        let limit = (counters.rays as f64 * 2e-6).max(3.0);
+        let limit = ((counters.rays + counters.untraced) as f64 * 2e-6).max(3.0);
         assert!(rare as f64 <= limit, "labels disagree with the path's medium: {counters:?}");
         assert_eq!(counters.non_finite, 0, "radiance that is not finite: {counters:?}");
         Rendered { image, counters }

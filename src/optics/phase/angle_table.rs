@@ -42,7 +42,12 @@ struct Hemisphere {
     density: Vec<f32>,
     /// Share of all samples up to each node.
     cumulative: Vec<f32>,
+    /// The cell in which each of [`GUIDES`] even steps of the share begins.
+    guide: Vec<u32>,
 }
+
+/// Steps of the share whose cell is known: from there few cells are left to be looked at.
+const GUIDES: usize = 256;
 
 impl AngleTable {
     /// Through the values of a function that is not negative; `None` when it vanishes or is not finite.
@@ -99,7 +104,9 @@ impl Hemisphere {
             sum += cell_mass(cell) / total;
             cumulative.push(sum as f32);
         }
+        let guide = (0..GUIDES).map(|i| cell_of(&cumulative, sum as f32 * (i as f32 / GUIDES as f32)) as u32);
         Self {
+            guide: guide.collect(),
             t: nodes.iter().map(|n| n.t).collect(),
             density: nodes.iter().map(|n| (n.density / total) as f32).collect(),
             cumulative,
@@ -121,7 +128,12 @@ impl Hemisphere {
     /// Where the share counted from the pole is `share`.
     fn at_share(&self, share: f32) -> f32 {
         // The last node at or below it starts the cell; cells of no share are stepped over.
-        let i = self.cumulative.partition_point(|&c| c <= share).clamp(1, self.t.len() - 1) - 1;
+        let step = (share / self.share().max(f32::MIN_POSITIVE) * GUIDES as f32) as usize;
+        // The step before: the quotient is rounded.
+        let mut i = self.guide[step.clamp(1, GUIDES) - 1] as usize;
+        while i + 2 < self.t.len() && self.cumulative[i + 1] <= share {
+            i += 1;
+        }
         let (t0, width) = (self.t[i], self.t[i + 1] - self.t[i]);
         let (p0, rise) = (self.density[i], self.density[i + 1] - self.density[i]);
         let rest = (share - self.cumulative[i]) / (2.0 * std::f32::consts::PI);
@@ -130,6 +142,11 @@ impl Hemisphere {
         let d = 2.0 * rest / (p0 + root).max(f32::MIN_POSITIVE);
         t0 + d.min(width)
     }
+}
+
+/// The cell whose share begins at or below `share`; cells of no share are stepped over.
+fn cell_of(cumulative: &[f32], share: f32) -> usize {
+    cumulative.partition_point(|&c| c <= share).clamp(1, cumulative.len() - 1) - 1
 }
 
 /// Integral over the sphere and mean cosine of a smooth function.

@@ -6,11 +6,9 @@
 //! Lobes as narrow as 1e-4 rad live where 1 - cos, or at the backward end 1 + cos, is 1e-8: in single precision the
 //! cosine has no digits left there, and neither end can be found from the other.
 
-use std::f32::consts::PI;
-
 use glam::Vec3;
 
-use crate::geometry::elementary::{atan2, sin_cos};
+use crate::geometry::elementary::{atan2, sin_cos_of_turn};
 
 /// The angle between the directions of travel before and after; 0 is straight on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +84,7 @@ impl Deflection {
     /// The direction turned from +z by this angle, at the fraction `u` of a turn around it.
     #[inline]
     pub fn around_z(self, u: f32) -> Vec3 {
-        let (sin, cos) = sin_cos(2.0 * PI * u);
+        let (sin, cos) = sin_cos_of_turn(u);
         Vec3::new(self.sine() * cos, self.sine() * sin, self.cosine())
     }
 }
@@ -94,6 +92,7 @@ impl Deflection {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f32::consts::PI;
 
     #[test]
     fn both_ends_keep_their_digits() {

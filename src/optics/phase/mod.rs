@@ -16,6 +16,7 @@ mod fournier_forand;
 mod gaussian;
 mod henyey_greenstein;
 mod isotropic;
+mod legendre;
 mod linear_anisotropic;
 mod rayleigh;
 mod sakas;
@@ -38,6 +39,7 @@ pub use fournier_forand::FournierForand;
 pub use gaussian::Gaussian;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
+pub use legendre::legendre;
 pub use linear_anisotropic::LinearAnisotropic;
 pub use rayleigh::Rayleigh;
 pub use sakas::Sakas;
@@ -126,6 +128,14 @@ trait Lobe {
         self.table().map_or(1.0, |_| self.value(deflection) / pdf_w)
     }
 
+    /// An angle with its weight.
+    #[inline]
+    fn weighted(&self, u: f32) -> (Deflection, f32) {
+        let deflection = self.sample(u);
+        let weight = self.table().map_or(1.0, |_| self.weight(deflection, self.pdf_w(deflection)));
+        (deflection, weight)
+    }
+
     /// An angle with its density and its weight.
     #[inline]
     fn sampled(&self, u: f32) -> (Deflection, f32, f32) {
@@ -192,6 +202,19 @@ impl PhaseFunction {
         PhaseSample { wi, weight, pdf_w }
     }
 
+    /// Direction and weight as of [`PhaseFunction::sample`], whose density is not asked for, but for the rounding of the
+    /// direction's length.
+    #[inline]
+    pub fn turn(&self, forward: Vec3, u: [f32; 2]) -> (Vec3, f32) {
+        let (deflection, weight) = match self {
+            // Any axis will do.
+            Self::Isotropic(lobe) => return (lobe.sample(u[0]).around_z(u[1]), 1.0),
+            Self::HenyeyGreenstein(lobe) => lobe.weighted(u[0]),
+            _ => self.any_weighted(u[0]),
+        };
+        (Frame::around(forward).to_world(deflection.around_z(u[1])), weight)
+    }
+
     /// Mean cosine of the angle of deflection; positive is forward.
     pub fn mean_cosine(&self) -> f32 {
         each!(self, lobe => lobe.mean_cosine())
@@ -206,6 +229,11 @@ impl PhaseFunction {
     #[inline(never)]
     fn any_pdf_w(&self, deflection: Deflection) -> f32 {
         each!(self, lobe => lobe.pdf_w(deflection))
+    }
+
+    #[inline(never)]
+    fn any_weighted(&self, u: f32) -> (Deflection, f32) {
+        each!(self, lobe => lobe.weighted(u))
     }
 
     #[inline(never)]

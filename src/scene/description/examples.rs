@@ -74,6 +74,7 @@ integrator = "auto"
 samples = 64
 max_depth = 0
 split = 1
+similarity = 2
 seed = 0
 filter = "box"
 

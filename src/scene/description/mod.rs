@@ -336,6 +336,8 @@ pub struct RenderDescription {
     pub split: u32,
     /// Both what is scattered and what gets through are followed on the first so many ways through media (0).
     pub forced_scattering: u32,
+    /// Order of the similarity relations that simplify scattering in thick media; 0 is exact (0).
+    pub similarity: u32,
     /// Seed of every random number (0).
     pub seed: u64,
     /// Pixel filter (box).

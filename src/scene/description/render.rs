@@ -4,6 +4,7 @@ use super::allowed::Allowed;
 use super::error::SceneError;
 use super::value::Value;
 use super::{FilterKind, IntegratorKind, KernelKind, PhotonDescription, RenderDescription};
+use crate::optics::similarity::HIGHEST_ORDER;
 
 impl Default for RenderDescription {
     fn default() -> Self {
@@ -13,6 +14,7 @@ impl Default for RenderDescription {
             max_depth: 0,
             split: 1,
             forced_scattering: 0,
+            similarity: 0,
             seed: 0,
             filter: FilterKind::Box,
             photons: PhotonDescription::default(),
@@ -75,6 +77,7 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
         max_depth: whole("max_depth", 0, u32::MAX.into(), default.max_depth)?,
         split: whole("split", 0, MOST_SPLITS, default.split)?,
         forced_scattering: whole("forced_scattering", 0, MOST_SPLITS, default.forced_scattering)?,
+        similarity: whole("similarity", 0, HIGHEST_ORDER as i128, default.similarity)?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
         filter: table.get("filter").map_or(Ok(default.filter), |v| v.choice(&FILTERS))?,
         photons: table.get("photons").map_or(Ok(default.photons), |v| photons(&v))?,

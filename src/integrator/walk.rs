@@ -1,0 +1,51 @@
+//! Random walks in a ball without surfaces, where nothing is traced and nothing shines: a loop of its own.
+//!
+//! Each turn draws what [`Sample::fly`] and [`Sample::scatter`] would draw from the same random numbers. It keeps the path
+//! in registers and brings directions back to unit length by a step of Newton's method for 1 / sqrt(d . d):
+//!
+//! ```text
+//! d' = d (3 - d . d) / 2,   |d'| - 1 = -3/2 (|d| - 1)^2
+//! ```
+
+use super::path::{Branch, Fate, Sample};
+use crate::optics::phase::PhaseFunction;
+
+impl Sample<'_> {
+    /// Goes on with a path until its next flight would leave the ball, and leaves that flight to be drawn again.
+    pub(super) fn walk(&mut self, branch: &mut Branch) -> Fate {
+        match &self.frame.medium(branch.medium).phase {
+            phase @ PhaseFunction::Isotropic(_) => self.walk_by(branch, phase),
+            phase @ PhaseFunction::HenyeyGreenstein(_) => self.walk_by(branch, phase),
+            phase => self.walk_by(branch, phase),
+        }
+    }
+
+    #[inline(always)]
+    fn walk_by(&mut self, walked: &mut Branch, phase: &PhaseFunction) -> Fate {
+        let medium = self.scratch.media[walked.medium.0 as usize];
+        let mut branch = *walked;
+        let mut fate = Fate::GoesOn;
+        let before = branch.interactions;
+        while branch.interactions < self.max_depth && branch.is_below_the_longest() {
+            let mut stream = branch.stream;
+            let u = stream.next4();
+            let flight = medium.free_flight(branch.throughput, u[0]);
+            let point = branch.origin + branch.direction * flight.distance;
+            if !branch.clearing.holds(point) {
+                break;
+            }
+            let (wi, weight) = phase.turn(branch.direction, [u[1], u[2]]);
+            branch.stream = stream;
+            branch.origin = point;
+            branch.direction = wi * (1.5 - 0.5 * wi.length_squared());
+            branch.throughput *= medium.scatter_weight(&flight) * weight;
+            fate = branch.goes_on(u[3]);
+            if fate == Fate::Ends {
+                break;
+            }
+        }
+        self.scratch.counters.untraced += u64::from(branch.interactions - before);
+        *walked = branch;
+        fate
+    }
+}
