@@ -1,9 +1,13 @@
 //! The examples that ship with the project are what their descriptions say.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on fails
+// A test that cannot go on fails; what the tests share prints measured numbers.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod common;
 
 use std::path::Path;
 
+use common::render::prepare;
 use floe::light::Picture;
 use glam::Vec3;
 
@@ -35,6 +39,17 @@ fn the_sky_of_the_iceberg_is_its_formula() {
         // The file holds half-precision numbers: 11 bits.
         assert!((*texel - want).abs().max_element() <= want.max_element() / 1024.0, "texel {at}");
     }
+}
+
+/// The waters are closed behind the tiles, and no path leaves them: [`common::render::Prepared::render`] counts labels that
+/// disagree.
+#[test]
+fn the_three_waters_are_closed() {
+    let scene = prepare(Path::new("sequences/waters/scene.toml"));
+    let picture = scene.render(1, 0);
+    assert_eq!((picture.counters.escaped_inside, picture.counters.cut), (0, 0));
+    let names: Vec<&str> = scene.frame.media.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["air", "coast", "estuary", "ocean"]);
 }
 
 /// Writes the sky: `cargo test --release --test sequences -- --ignored`

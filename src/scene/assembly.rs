@@ -20,6 +20,7 @@ use crate::mesh::{self, Interface, RawMesh, Region, normals};
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::{FrameNumber, frame_path, has_place};
 use crate::spectrum::{Role, Spectrum};
+use glam::Vec3;
 
 /// A frame ready for rays, and what there is to say about it.
 #[derive(Clone, Debug)]
@@ -97,6 +98,9 @@ impl World {
         Ok(assembly.finish(self.media_at(number)?, accel, previous))
     }
 }
+
+/// So many emitting triangles are asked for the medium before them; where there are more, they may be in any.
+const MOST_ASKED: usize = 256;
 
 struct Assembly<'a> {
     world: &'a World,
@@ -213,7 +217,7 @@ impl<'a> Assembly<'a> {
             _ => None,
         };
         let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
-        let lit = self.lit(&lights);
+        let lit = self.lit(|point| medium_at(point, &accel, pair_of, MediumId(0)));
         let needs =
             Needs { similarity: !reduced.is_empty(), ..self.needs(&media, &lights, &lit, camera_medium) };
         Assembled {
@@ -288,10 +292,21 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Media that are joined to the outside by index-matched boundaries; all of them where triangles emit.
-    fn lit(&self, lights: &Lights) -> Vec<bool> {
-        let mut lit = vec![lights.area.is_some(); self.world.media.len()];
+    /// Media that are joined to the outside, or to one that a triangle emits into, by index-matched boundaries.
+    ///
+    /// A light that is looked for where it cannot be seen costs shadow rays, and one that is not is still met by chance.
+    fn lit(&self, medium_at: impl Fn(Vec3) -> MediumId) -> Vec<bool> {
+        let geometry = &self.parts.geometry;
+        let emits = |id: &u32| self.parts.emitters.iter().any(|(e, _)| *e == geometry.surfaces[*id as usize]);
+        let emitting: Vec<u32> =
+            (0..geometry.triangles.len() as u32).filter(emits).take(MOST_ASKED + 1).collect();
+        let mut lit = vec![emitting.len() > MOST_ASKED; self.world.media.len()];
         lit[0] = true;
+        for id in emitting.into_iter().take(MOST_ASKED) {
+            let [a, b, c] = geometry.vertices(id);
+            let before = 1e-4 * (b - a).cross(c - a).normalize_or_zero() * (b - a).length();
+            lit[medium_at((a + b + c) / 3.0 + before).0 as usize] = true;
+        }
         loop {
             let before = lit.clone();
             for pair in self.parts.pairs.keys().filter(|p| p.matched) {

@@ -74,3 +74,19 @@ fn looking_for_lamps_gives_what_chance_gives_with_less_noise() {
     println!("noise with over without: {ratio:.3}");
     assert!(ratio < 0.9, "looking for the lamp does not pay: {ratio}");
 }
+
+/// A shadow ray that an interface is sure to stop is not traced: lamps are looked for in the media before them.
+#[test]
+fn lamps_are_looked_for_where_they_can_be_seen() {
+    let surface = parallelogram(DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
+    for (height, seen) in [(2.0, [true, false]), (-2.0, [true, true])] {
+        let lamp = parallelogram(DVec3::new(-0.5, -0.5, height), DVec3::Y, DVec3::X);
+        let scene = SceneFolder::new().mesh("surface.ply", &surface).mesh("lamp.ply", &lamp).scene(
+            "[media.water]\nior = 1.33\nscattering = 1\n\
+             [[surfaces]]\nmesh = \"surface.ply\"\nfront = \"air\"\nback = \"water\"\nmaterial = { kind = \"dielectric\" }\n\
+             [[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = { kind = \"emitter\", radiance = 1 }\n\
+             [camera]\neye = [0, -4, 1]\ntarget = [0, 0, 0]\n",
+        );
+        assert_eq!(scene.frame.lit, seen, "a lamp at {height} m");
+    }
+}
