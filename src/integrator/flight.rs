@@ -124,7 +124,11 @@ impl Sample<'_> {
     /// True when a particle of its medium may turn the path.
     #[inline]
     pub(super) fn turns(&self, branch: &Branch) -> bool {
-        branch.scatterings_left > 0 && self.scratch.media[branch.medium.0 as usize].scatters
+        branch.scatterings_left > 0
+            && self.scratch.media[branch.medium.0 as usize].scatters
+            && self.photons.is_none_or(|pass| {
+                pass.walks || (branch.lookups_left > 0 && pass.peaked[branch.medium.0 as usize])
+            })
     }
 
     /// The next surface if it is nearer than `t_max`; what the medium adds on the way to it is added.

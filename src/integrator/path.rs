@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::flight::{Clearing, Event};
-use super::photon::PhotonPass;
+use super::photon::{self, PhotonPass};
 use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::optics::medium::MediumId;
@@ -51,7 +51,7 @@ pub const HARD_LIMIT: u32 = 65_536;
 /// paths, and the mean length of walks without any way out is bounded.
 const LONG_WALK: u32 = 65_536;
 /// No path goes on beyond this many interactions.
-const LONGEST_WALK: u32 = 1 << 24;
+pub(super) const LONGEST_WALK: u32 = 1 << 24;
 
 /// A path being followed.
 #[derive(Clone, Copy, Debug)]
@@ -145,7 +145,7 @@ impl PathTracer {
             throughput: frame.mode.white(),
             splits_left: self.split,
             forced_left: self.forced,
-            scatterings_left: self.scattered.most() * u32::from(photons.is_none_or(|pass| pass.walks)),
+            scatterings_left: self.scattered.most(),
             lookups_left: photons.map_or(0, |pass| pass.lookups),
             ..Branch::new(ray.origin, ray.direction, stream)
         });
@@ -247,7 +247,6 @@ impl Sample<'_> {
         // The scattered light of lamps is that of photons, where there are any.
         let lamps = self.photons.is_none();
         let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.frame.looks_for_lights(branch.medium);
-        branch.lookups_left = 0;
         if lit {
             let receiver =
                 Receiver { position: point, normal: None, medium: branch.medium, leaves: u32::MAX };
@@ -259,6 +258,9 @@ impl Sample<'_> {
             self.radiance += branch.throughput * direct;
         }
         let turned = phase.sample(forward, [u[1], u[2]]);
+        if self.photons.is_some() && !photon::is_peak(turned.weight * turned.pdf_w) {
+            branch.lookups_left = 0;
+        }
         branch.scatterings_left -= 1;
         branch.throughput *= turned.weight;
         branch.origin = point;

@@ -14,6 +14,7 @@ use glam::Vec3;
 use super::PhotonPass;
 use super::kernel::profile;
 use super::map::PhotonMap;
+use super::peak::is_peak;
 use crate::geometry::Ray;
 use crate::integrator::path::{Branch, Sample};
 use crate::optics::phase::Deflection;
@@ -74,8 +75,11 @@ impl Sample<'_> {
             let t_max = (along + before.dot(beside)).clamp(0.0, ray.t_max);
             let length = described.density.length(&Ray { t_max, ..*ray });
             let towards_eye = Deflection::between(photon.direction, -ray.direction);
-            let value = described.phase.value(towards_eye) * kernel(pass, squared, reach);
-            sum += photon.flux * medium.transmittance(length) * value;
+            let value = described.phase.value(towards_eye);
+            if is_peak(value) && (photon.scattered || !branch.arrival.specular_from_eye) {
+                return;
+            }
+            sum += photon.flux * medium.transmittance(length) * (value * kernel(pass, squared, reach));
         });
         sum
     }

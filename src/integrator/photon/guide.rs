@@ -104,6 +104,7 @@ mod tests {
             normal: hit().ng,
             medium: MediumId(0),
             flux: Lanes::splat(1.0 + i as f32),
+            scattered: true,
             spread: 1.0,
         };
         Guide::new(&PhotonMap::new(&(0..photons).map(photon).collect::<Vec<_>>(), 1.0), &hit())

@@ -26,6 +26,8 @@ pub struct Photon {
     /// Flux in W (per nm where lanes are wavelengths) on the lanes. In a medium it is what is scattered there, before
     /// the phase function; on a surface what would be reflected by an albedo of 1.
     pub flux: Lanes,
+    /// It was scattered before it arrived, and not only within the peaks of phase functions.
+    pub scattered: bool,
     /// How much wider than others it is spread, at least 1: photons that stand for much light, being emitted where there
     /// are few, would be seen one by one.
     pub spread: f32,
@@ -278,6 +280,7 @@ mod tests {
             normal: Vec3::ZERO,
             medium: MediumId(0),
             flux: Lanes::splat(i as f32),
+            scattered: false,
             spread: if i % 5 == 0 { 3.0 } else { 1.0 },
         };
         (0..count).map(photon).collect()

@@ -7,10 +7,11 @@
 //! |---|---|
 //! | of photon lights (sun, emitters, mostly the sky): seen through specular surfaces only | eye paths |
 //! | straight onto a diffuse surface | next-event estimation |
-//! | turned by specular surfaces, then onto a diffuse surface | caustic photons |
+//! | turned by specular surfaces and the peaks of phase functions, then onto a diffuse surface | caustic photons |
 //! | scattered before, onto the first diffuse surface of an eye path | final gathering, or global photons |
 //! | ... onto the second one | global photons |
-//! | scattered in a medium | photons around the eye's rays, up to the last vertex at which photons are asked |
+//! | scattered in a medium by a wide angle | photons around the eye's rays, up to the last surface at which photons are asked |
+//! | ... within the peak of its phase function | eye paths that turn there and go on asking; [`peak`] |
 //! | of any other sky, and of media that emit | eye paths alone, which go on as in path tracing |
 //!
 //! Photons carry the light of the sky where a medium scatters, since eye paths would have to walk through it, and where
@@ -21,6 +22,7 @@ pub(super) mod gather;
 pub(super) mod guide;
 pub(super) mod kernel;
 pub mod map;
+pub(super) mod peak;
 pub mod radius;
 pub(super) mod trace;
 
@@ -29,8 +31,10 @@ pub use radius::Radii;
 
 pub(super) use gather::reflected;
 pub(super) use guide::Guide;
+pub(super) use peak::is_peak;
 
 use emission::Emission;
+use peak::has_peak;
 use trace::{Arrivals, Tracing};
 
 use super::Counters;
@@ -78,6 +82,8 @@ pub struct PhotonPass {
     pub(super) lookups: u8,
     /// Eye paths go on for light that photons do not carry.
     pub(super) walks: bool,
+    /// Media whose phase functions have a peak ([`is_peak`]).
+    pub(super) peaked: Vec<bool>,
     /// The sky is among the lights that photons carry.
     pub(super) sky: bool,
 }
@@ -138,6 +144,7 @@ impl PhotonFrame {
             guide: settings.guide,
             lookups: self.lookups,
             walks: self.walks,
+            peaked: frame.media.iter().map(|medium| has_peak(&medium.phase)).collect(),
             sky: self.sky,
         };
         (pass, arrivals.counters)

@@ -114,6 +114,7 @@ mod tests {
             normal: Vec3::Z,
             medium: MediumId(0),
             flux: Lanes::ONE,
+            scattered: true,
             spread: 1.0,
         };
         let lattice: Vec<Photon> = (0..10_000).map(photon).collect();

@@ -9,12 +9,13 @@ use rayon::prelude::*;
 
 use super::emission::{Emission, Emitted};
 use super::map::Photon;
+use super::peak::is_peak;
 use crate::accel::Hit;
 use crate::geometry::Frame as Basis;
 use crate::integrator::diffuse::DiffuseLobe;
 use crate::integrator::flight::Event;
 use crate::integrator::interface::photon_ways;
-use crate::integrator::path::{Arrival, Branch, Fate, HARD_LIMIT, Sample};
+use crate::integrator::path::{Branch, Fate, HARD_LIMIT, LONGEST_WALK, Sample};
 use crate::integrator::{Counters, Scratch};
 use crate::optics::fresnel;
 use crate::optics::refraction::reflect;
@@ -32,8 +33,8 @@ const BATCH: u32 = 1024;
 enum History {
     /// Nothing that turned it.
     Straight,
-    /// Specular surfaces only.
-    Specular,
+    /// Specular surfaces and the peaks of phase functions only.
+    Narrowed,
     /// Something else.
     Scattered,
 }
@@ -41,7 +42,7 @@ enum History {
 /// The photons of one pass.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Arrivals {
-    /// On surfaces, turned by specular surfaces only.
+    /// On surfaces, turned by specular surfaces and within peaks only.
     pub(super) caustic: Vec<Photon>,
     /// On surfaces, after scattering.
     pub(super) global: Vec<Photon>,
@@ -145,7 +146,7 @@ impl Walk<'_> {
 
     fn advance(&mut self, flying: &mut Flying) -> Fate {
         let branch = &mut flying.branch;
-        if branch.steps >= HARD_LIMIT {
+        if branch.steps >= HARD_LIMIT || branch.interactions >= LONGEST_WALK {
             return self.sample.cut(branch);
         }
         branch.steps += 1;
@@ -220,7 +221,7 @@ impl Walk<'_> {
         branch.medium = if way.crosses { beyond } else { incident };
         branch.throughput *= total;
         branch.go_on(hit, way.direction);
-        flying.turned_by_mirror();
+        flying.turned_narrowly();
         flying.branch.interacted(u[3])
     }
 
@@ -261,7 +262,7 @@ impl Walk<'_> {
             if takes_first { (first, about_ns, sums[0]) } else { (second, about_ng, sums[1]) };
         branch.throughput *= weight * (total / own);
         branch.leave(hit, direction);
-        flying.turned_by_mirror();
+        flying.turned_narrowly();
         flying.branch.interacted(u[3])
     }
 
@@ -288,11 +289,12 @@ impl Walk<'_> {
             normal: hit.ng,
             medium: branch.medium,
             flux: branch.throughput * flying.scale,
+            scattered: flying.history == History::Scattered,
             spread: flying.spread,
         };
         match flying.history {
             History::Straight => {}
-            History::Specular => self.arrivals.caustic.push(photon),
+            History::Narrowed => self.arrivals.caustic.push(photon),
             History::Scattered => self.arrivals.global.push(photon),
         }
         if self.sample.is_spent(branch) {
@@ -317,6 +319,7 @@ impl Walk<'_> {
                 normal: Vec3::ZERO,
                 medium: branch.medium,
                 flux: branch.throughput * (flying.scale / share),
+                scattered: flying.history == History::Scattered,
                 spread: flying.spread,
             });
         }
@@ -328,16 +331,20 @@ impl Walk<'_> {
         branch.origin = point;
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
-        flying.history = History::Scattered;
-        flying.branch.interacted(u[3])
+        (branch.bounces, branch.steps) = (0, 0);
+        if is_peak(turned.weight * turned.pdf_w) {
+            flying.turned_narrowly();
+        } else {
+            flying.history = History::Scattered;
+        }
+        flying.branch.goes_on(u[3])
     }
 }
 
 impl Flying {
-    fn turned_by_mirror(&mut self) {
+    fn turned_narrowly(&mut self) {
         if self.history == History::Straight {
-            self.history = History::Specular;
+            self.history = History::Narrowed;
         }
-        self.branch.arrival = Arrival { specular_from_eye: false, lit: None };
     }
 }
