@@ -150,6 +150,6 @@ fn without_photons_there_is_path_tracing() {
             assert_eq!(picture.counters.photons, 0);
             picture.image.pixels.iter().map(|p| p.rgb.to_array().map(f32::to_bits)).collect::<Vec<_>>()
         };
-        assert_eq!(picture("integrator = \"photon\"\n"), picture(""));
+        assert_eq!(picture("integrator = \"photon\"\nphotons = { sky = false }\n"), picture(""));
     }
 }
