@@ -4,6 +4,7 @@
 //! [`crate::scene::frame::Frame`] and gives an [`EyeSample`].
 
 pub mod ambient_occlusion;
+mod beneath;
 pub mod counters;
 mod direct;
 mod flight;

@@ -12,6 +12,7 @@ use super::direct::Receiver;
 use super::flight::{Clearing, Event};
 use super::{EyeSample, FirstHit, Scratch};
 use crate::geometry::Ray;
+use crate::light::balance;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
@@ -65,8 +66,21 @@ pub struct Branch {
 pub(super) struct Arrival {
     /// Nothing but specular surfaces since the eye.
     pub(super) specular_from_eye: bool,
-    /// The last vertex that was lit by next-event estimation, if the way from there was straight.
-    pub(super) lit: Option<LitVertex>,
+    /// What next-event estimation looked for at the last vertex.
+    pub(super) looked: Looked,
+}
+
+/// Which of the lights that a path may run into next-event estimation has looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Looked {
+    /// None.
+    Not,
+    /// Those that are seen straight from a vertex, and nothing has turned the path since.
+    Straight(LitVertex),
+    /// Those beyond one interface, which is still ahead. Chance has this weight.
+    Beneath(f32),
+    /// Those beyond the interface that the path has just gone through. Chance has this weight.
+    Through(f32),
 }
 
 /// A vertex at which next-event estimation looked for the lights.
@@ -117,7 +131,7 @@ impl PathTracer {
             interactions: 0,
             steps: 0,
             splits_left: self.split,
-            arrival: Arrival { specular_from_eye: true, lit: None },
+            arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
             clearing: Clearing::NONE,
             stream,
         });
@@ -207,8 +221,9 @@ impl Sample<'_> {
         branch.origin = point;
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
-        let vertex = LitVertex { position: point, pdf_w: turned.pdf_w };
-        branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
+        let looked =
+            if lit { self.looked(branch.medium, point, turned.wi, turned.pdf_w) } else { Looked::Not };
+        branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.interacted(u[3])
     }
 
@@ -221,10 +236,11 @@ impl Sample<'_> {
             self.scratch.counters.escaped_inside += 1;
         }
         let lights = &self.frame.lights;
-        let weight = branch
-            .arrival
-            .lit
-            .map_or(1.0, |v| crate::light::balance(v.pdf_w, lights.environment.pdf_w(branch.direction)));
+        let weight = match branch.arrival.looked {
+            Looked::Straight(v) => balance(v.pdf_w, lights.environment.pdf_w(branch.direction)),
+            Looked::Through(weight) if lights.environment.is_sampled() => weight,
+            _ => 1.0,
+        };
         let mut radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
         if let Some(sun) = &lights.sun
             && branch.arrival.specular_from_eye

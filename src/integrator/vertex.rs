@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::direct::Receiver;
-use super::path::{Arrival, Branch, Fate, LitVertex, Sample};
+use super::path::{Arrival, Branch, Fate, Looked, Sample};
 use crate::geometry::Frame as Basis;
 use crate::light::balance;
 use crate::optics::fresnel;
@@ -15,10 +15,10 @@ use crate::scene::surface::{MediumPair, Surface};
 use crate::spectrum::{LaneCurve, Lanes};
 
 /// Reflected and refracted directions at an interface; no refraction is total reflection.
-struct Directions {
-    reflectance: f32,
+pub(super) struct Directions {
+    pub(super) reflectance: f32,
     reflected: Vec3,
-    refracted: Option<Vec3>,
+    pub(super) refracted: Option<Vec3>,
 }
 
 impl Sample<'_> {
@@ -47,6 +47,9 @@ impl Sample<'_> {
     fn pass(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
         let (incident, beyond) = pair.crossed(hit.from_front);
         self.check_label(branch, pair, hit);
+        if !matches!(branch.arrival.looked, Looked::Straight(_)) {
+            branch.arrival.looked = Looked::Not;
+        }
         branch.enter(beyond, self.index_factor(incident, beyond));
         branch.go_on(hit, branch.direction);
         Fate::GoesOn
@@ -60,7 +63,11 @@ impl Sample<'_> {
         let eta_t_over_i = self.frame.medium(beyond).n / self.frame.medium(incident).n;
         let ways = directions(-branch.direction, hit, eta_t_over_i);
         branch.medium = incident;
-        branch.arrival.lit = None;
+        let beyond_looked = match branch.arrival.looked {
+            Looked::Beneath(weight) => Looked::Through(weight),
+            _ => Looked::Not,
+        };
+        branch.arrival.looked = Looked::Not;
         let factor = self.index_factor(incident, beyond);
         let mut reflected = *branch;
         reflected.go_on(hit, ways.reflected);
@@ -71,6 +78,7 @@ impl Sample<'_> {
         let mut refracted = *branch;
         refracted.go_on(hit, direction);
         refracted.enter(beyond, factor);
+        refracted.arrival.looked = beyond_looked;
         if branch.splits_left > 0 {
             reflected.split_off(ways.reflectance, 0);
             refracted.split_off(1.0 - ways.reflectance, 1);
@@ -110,16 +118,17 @@ impl Sample<'_> {
         }
         let local = warp::cosine_hemisphere([u[1], u[2]]);
         let mut wi = Basis::around(hit.ns).to_world(local).normalize();
-        let mut vertex =
-            Some(LitVertex { position: hit.point.position, pdf_w: warp::cosine_hemisphere_pdf_w(local.z) });
+        let mut looked = Looked::Not;
         if wi.dot(hit.ng) <= 0.0 {
             // The part of the lobe that dips under the surface goes around the geometric normal instead; it is found
             // by chance only, so next-event estimation has no share in it.
             wi = Basis::around(hit.ng).to_world(local).normalize();
-            vertex = None;
+        } else if lit {
+            let pdf_w = warp::cosine_hemisphere_pdf_w(local.z);
+            looked = self.looked(branch.medium, hit.point.position, wi, pdf_w);
         }
         branch.throughput *= albedo;
-        branch.arrival = Arrival { specular_from_eye: false, lit: vertex.filter(|_| lit) };
+        branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
         branch.interacted(u[3])
     }
@@ -144,7 +153,7 @@ impl Sample<'_> {
         let reflectance = fresnel::conductor(wo.dot(normal), index[0], index[1]);
         self.remember_first(branch, hit, reflectance);
         branch.throughput *= reflectance;
-        branch.arrival.lit = None;
+        branch.arrival.looked = Looked::Not;
         branch.leave(hit, wi);
         branch.interacted(u[3])
     }
@@ -155,8 +164,9 @@ impl Sample<'_> {
         if !hit.from_front {
             return;
         }
-        let weight = match (branch.arrival.lit, &self.frame.lights.area) {
-            (Some(vertex), Some(area)) => {
+        let weight = match (branch.arrival.looked, &self.frame.lights.area) {
+            (Looked::Through(weight), _) => weight,
+            (Looked::Straight(vertex), Some(area)) => {
                 let distance = (hit.point.position - vertex.position).length();
                 balance(vertex.pdf_w, area.pdf_w(hit.triangle, branch.direction, distance))
             }
@@ -210,7 +220,7 @@ impl Branch {
 }
 
 /// Both directions about the shading normal; about the geometric one when either would end up on the wrong side.
-fn directions(wo: Vec3, hit: &SurfaceHit, eta_t_over_i: f32) -> Directions {
+pub(super) fn directions(wo: Vec3, hit: &SurfaceHit, eta_t_over_i: f32) -> Directions {
     let about = |normal: Vec3| Directions {
         reflectance: fresnel::dielectric(wo.dot(normal), eta_t_over_i).reflectance,
         reflected: reflect(wo, normal),
