@@ -1,6 +1,7 @@
 //! Next-event estimation: light that reaches a vertex straight from a source.
 //!
-//! Only index-matched boundaries may lie in between; what is refracted or reflected on the way is found by chance.
+//! Only index-matched boundaries may lie in between; what is refracted or reflected on the way is found by chance, or by a
+//! guess of where it comes from ([`super::beneath`]).
 //! Each kind of light gets one sample, weighted against the chance of running into it by the balance heuristic. The sun
 //! is never run into, so its samples count in full.
 
@@ -38,6 +39,9 @@ impl Sample<'_> {
     ) -> Lanes {
         let u = stream.next4();
         let frame = self.frame;
+        if let Some(beneath) = self.looks_beneath(receiver.medium) {
+            return self.beneath(beneath, receiver, response, [u[0], u[1]]);
+        }
         let lights = &frame.lights;
         let mut sum = Lanes::ZERO;
         if let Some(sun) = lights.sun.as_ref().filter(|_| lamps) {
@@ -130,7 +134,7 @@ impl Sample<'_> {
 
     /// What one medium leaves of light between two distances along a ray.
     #[inline]
-    fn transmittance_of(&self, medium: MediumId, ray: &Ray, from: f32, to: f32) -> Lanes {
+    pub(super) fn transmittance_of(&self, medium: MediumId, ray: &Ray, from: f32, to: f32) -> Lanes {
         let mut length = to - from;
         if self.frame.needs.heterogeneous {
             let way = Ray { origin: ray.at(from), direction: ray.direction, t_max: length };

@@ -6,6 +6,7 @@
 #![doc = include_str!("thick_media.md")]
 
 pub mod ambient_occlusion;
+mod beneath;
 pub mod counters;
 mod diffuse;
 mod direct;

@@ -13,6 +13,7 @@ use super::flight::{Clearing, Event};
 use super::photon::{self, PhotonPass};
 use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
+use crate::light::balance;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
@@ -87,14 +88,27 @@ pub struct Branch {
 pub(super) struct Arrival {
     /// Nothing but specular surfaces since the eye.
     pub(super) specular_from_eye: bool,
-    /// The last vertex that was lit by next-event estimation, if the way from there was straight.
-    pub(super) lit: Option<LitVertex>,
+    /// What next-event estimation looked for at the last vertex.
+    pub(super) looked: Looked,
+}
+
+/// Which of the lights that a path may run into next-event estimation has looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Looked {
+    /// None.
+    Not,
+    /// Those that are seen straight from a vertex, and nothing has turned the path since.
+    Straight(LitVertex),
+    /// Those beyond one interface, which is still ahead. Chance has this weight.
+    Beneath(f32),
+    /// Those beyond the interface that the path has just gone through. Chance has this weight.
+    Through(f32),
 }
 
 impl Arrival {
     /// True where light that photons carry is not theirs: straight from a vertex that was lit, or seen by the eye.
     pub(super) fn counts_lights(&self) -> bool {
-        self.specular_from_eye || self.lit.is_some_and(|vertex| vertex.lamps)
+        self.specular_from_eye || matches!(self.looked, Looked::Straight(vertex) if vertex.lamps)
     }
 }
 
@@ -267,7 +281,8 @@ impl Sample<'_> {
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
         let vertex = LitVertex { position: point, pdf_w: turned.pdf_w, lamps };
-        branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
+        let looked = if lit { self.looked(branch.medium, vertex, turned.wi) } else { Looked::Not };
+        branch.arrival = Arrival { specular_from_eye: false, looked };
         (branch.bounces, branch.steps) = (0, 0);
         branch.goes_on(u[3])
     }
@@ -281,10 +296,11 @@ impl Sample<'_> {
             self.scratch.counters.escaped_inside += 1;
         }
         let lights = &self.frame.lights;
-        let weight = branch
-            .arrival
-            .lit
-            .map_or(1.0, |v| crate::light::balance(v.pdf_w, lights.environment.pdf_w(branch.direction)));
+        let weight = match branch.arrival.looked {
+            Looked::Straight(v) => balance(v.pdf_w, lights.environment.pdf_w(branch.direction)),
+            Looked::Through(weight) if lights.environment.is_sampled() => weight,
+            _ => 1.0,
+        };
         let mut radiance = Lanes::ZERO;
         if self.sky_is_for_paths() || branch.arrival.counts_lights() {
             radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
@@ -342,7 +358,7 @@ impl Branch {
             forced_left: 0,
             scatterings_left: u32::MAX,
             lookups_left: 0,
-            arrival: Arrival { specular_from_eye: true, lit: None },
+            arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
             clearing: Clearing::NONE,
             stream,
         }

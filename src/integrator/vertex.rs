@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::diffuse::DiffuseLobe;
 use super::direct::Receiver;
 use super::interface;
-use super::path::{Arrival, Branch, Fate, LitVertex, Sample};
+use super::path::{Arrival, Branch, Fate, LitVertex, Looked, Sample};
 use super::photon::{self, Guide, PhotonPass};
 use crate::light::balance;
 use crate::optics::fresnel;
@@ -42,6 +42,9 @@ impl Sample<'_> {
     fn pass(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
         let (incident, beyond) = pair.crossed(hit.from_front);
         self.check_label(branch, pair, hit);
+        if !matches!(branch.arrival.looked, Looked::Straight(_)) {
+            branch.arrival.looked = Looked::Not;
+        }
         branch.enter(beyond, self.index_factor(incident, beyond));
         branch.go_on(hit, branch.direction);
         Fate::GoesOn
@@ -55,7 +58,11 @@ impl Sample<'_> {
         let eta_t_over_i = self.frame.medium(beyond).n / self.frame.medium(incident).n;
         let ways = interface::ways(-branch.direction, hit.ns, hit.ng, eta_t_over_i);
         branch.medium = incident;
-        branch.arrival.lit = None;
+        let beyond_looked = match branch.arrival.looked {
+            Looked::Beneath(weight) => Looked::Through(weight),
+            _ => Looked::Not,
+        };
+        branch.arrival.looked = Looked::Not;
         let factor = self.index_factor(incident, beyond);
         let mut reflected = *branch;
         reflected.go_on(hit, ways.reflected);
@@ -66,6 +73,7 @@ impl Sample<'_> {
         let mut refracted = *branch;
         refracted.go_on(hit, direction);
         refracted.enter(beyond, factor);
+        refracted.arrival.looked = beyond_looked;
         if branch.splits_left > 0 {
             reflected.split_off(ways.reflectance, 0);
             refracted.split_off(1.0 - ways.reflectance, 1);
@@ -118,7 +126,8 @@ impl Sample<'_> {
         let vertex = LitVertex { position: hit.point.position, pdf_w: own, lamps };
         // A constant sky of photons is found by chance where it lights a surface straight.
         let lit = lit || lamps && self.photons.is_some();
-        branch.arrival = Arrival { specular_from_eye: false, lit: lit.then_some(vertex) };
+        let looked = if lit { self.looked(branch.medium, vertex, wi) } else { Looked::Not };
+        branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
         branch.interacted(u[3])
     }
@@ -164,7 +173,7 @@ impl Sample<'_> {
         let reflectance = fresnel::conductor(wo.dot(normal), index[0], index[1]);
         self.remember_first(branch, hit, reflectance);
         branch.throughput *= reflectance;
-        branch.arrival.lit = None;
+        branch.arrival.looked = Looked::Not;
         branch.leave(hit, wi);
         branch.interacted(u[3])
     }
@@ -176,8 +185,9 @@ impl Sample<'_> {
         if !hit.from_front || is_for_photons {
             return;
         }
-        let weight = match (branch.arrival.lit, &self.frame.lights.area) {
-            (Some(vertex), Some(area)) => {
+        let weight = match (branch.arrival.looked, &self.frame.lights.area) {
+            (Looked::Through(weight), _) => weight,
+            (Looked::Straight(vertex), Some(area)) => {
                 let distance = (hit.point.position - vertex.position).length();
                 balance(vertex.pdf_w, area.pdf_w(hit.triangle, branch.direction, distance))
             }

@@ -8,6 +8,7 @@
 //! * The sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
 //!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out.
 //! * Emitting triangles are sampled by area.
+//! * Beneath a refracting interface directions are drawn in which compact lights are likely to be seen ([`beneath`]).
 //!
 //! Where nobody looks for them, sky and sun are an ambient radiance from all around,
 //!
@@ -16,11 +17,13 @@
 //! ```
 
 pub mod area;
+pub mod beneath;
 pub mod environment;
 mod picture;
 pub mod sun;
 
 pub use area::AreaLights;
+pub use beneath::Beneath;
 pub use environment::Environment;
 pub use picture::{ImageError, Picture};
 pub use sun::Sun;

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::beneath::Asked;
 use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, medium_at};
@@ -19,7 +20,7 @@ use crate::light::{AreaLights, Lights};
 use crate::mesh::{self, Interface, RawMesh, Region, normals};
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::{FrameNumber, frame_path, has_place};
-use crate::spectrum::{Role, Spectrum};
+use crate::spectrum::{Role, Spectrum, Wavelengths};
 use glam::Vec3;
 
 /// A frame ready for rays, and what there is to say about it.
@@ -218,8 +219,20 @@ impl<'a> Assembly<'a> {
         };
         let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
         let lit = self.lit(|point| medium_at(point, &accel, pair_of, MediumId(0)));
-        let needs =
-            Needs { similarity: !reduced.is_empty(), ..self.needs(&media, &lights, &lit, camera_medium) };
+        let asked = Asked {
+            parts: &self.parts,
+            media: &media,
+            lights: &lights,
+            lit: &lit,
+            accel: &accel,
+            wavelengths: Wavelengths::for_mode(world.mode, 0.5),
+        };
+        let beneath = asked.beneath();
+        let looked_from: Vec<bool> = lit.iter().zip(&beneath).map(|(lit, b)| *lit || b.is_some()).collect();
+        let needs = Needs {
+            similarity: !reduced.is_empty(),
+            ..self.needs(&media, &lights, &looked_from, camera_medium)
+        };
         Assembled {
             frame: Frame {
                 mode: world.mode,
@@ -229,6 +242,7 @@ impl<'a> Assembly<'a> {
                 media,
                 endless: self.endless,
                 lit,
+                beneath,
                 geometry: self.parts.geometry,
                 surfaces: self.parts.surfaces,
                 accel,
@@ -262,7 +276,13 @@ impl<'a> Assembly<'a> {
         if self.parts.emitters.is_empty() { None } else { AreaLights::new(triangles.collect()) }
     }
 
-    fn needs(&self, media: &[Medium], lights: &Lights, lit: &[bool], camera_medium: MediumId) -> Needs {
+    fn needs(
+        &self,
+        media: &[Medium],
+        lights: &Lights,
+        looked_from: &[bool],
+        camera_medium: MediumId,
+    ) -> Needs {
         let mut used = vec![false; media.len()];
         used[camera_medium.0 as usize] = true;
         for pair in self.parts.pairs.keys() {
@@ -271,7 +291,7 @@ impl<'a> Assembly<'a> {
         }
         let in_use = || media.iter().enumerate().filter(|(i, _)| used[*i]);
         let scattering = in_use().any(|(_, m)| !m.sigma_s.is_zero());
-        let lit_scattering = in_use().any(|(i, m)| lit[i] && !m.sigma_s.is_zero());
+        let lit_scattering = in_use().any(|(i, m)| looked_from[i] && !m.sigma_s.is_zero());
         let diffuse = self.parts.surfaces.iter().any(|s| matches!(s, Surface::Diffuse { .. }));
         Needs {
             scattering,

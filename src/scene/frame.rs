@@ -6,7 +6,7 @@ use super::needs::Needs;
 use super::surface::{MediumPair, Surface};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
-use crate::light::Lights;
+use crate::light::{Beneath, Lights};
 use crate::optics::medium::{Medium, MediumId};
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths, film_rgb};
 use glam::{DVec3, Vec3};
@@ -28,6 +28,8 @@ pub struct Frame {
     pub endless: Vec<bool>,
     /// Media from which a light may be seen without refraction in between.
     pub lit: Vec<bool>,
+    /// Where compact lights are likely to be seen from media that are not among those, by [`MediumId`].
+    pub beneath: Vec<Option<Beneath>>,
     /// All triangles.
     pub geometry: Geometry,
     /// What triangles are, by [`super::surface::SurfaceId`].
@@ -57,7 +59,7 @@ impl Frame {
     /// True where next-event estimation can find a light.
     #[inline]
     pub fn looks_for_lights(&self, id: MediumId) -> bool {
-        self.lit[id.0 as usize]
+        self.lit[id.0 as usize] || self.beneath[id.0 as usize].is_some()
     }
 
     /// True when a ray in `medium` can meet what it has hit: an opaque surface, or an interface of that medium.

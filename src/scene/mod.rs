@@ -4,6 +4,7 @@
 //! [`assembly`] adds the meshes of one frame and gives a [`frame::Frame`], which light transport reads.
 
 pub mod assembly;
+mod beneath;
 pub mod camera;
 mod density;
 pub mod description;

@@ -80,7 +80,7 @@ impl Needs {
                 "next-event estimation",
                 self.direct_light,
                 if self.direct_light {
-                    "a sun, a picture of the sky or an emitter can be seen directly from a scattering or diffuse vertex"
+                    "a sun, a picture of the sky or an emitter can be seen from a scattering or diffuse vertex"
                 } else {
                     "no light can be looked for from any vertex"
                 },

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::estimates::{assert_mean, polygon_irradiance};
-use crate::common::mesh::{TestMesh, parallelogram};
+use crate::common::mesh::{TestMesh, cuboid, parallelogram};
 use crate::common::scene::SceneFolder;
 
 /// The closed form of a floor point under the corner of a rectangle a x b at height c, as a check on the formula above.
@@ -89,4 +89,39 @@ fn lamps_are_looked_for_where_they_can_be_seen() {
         );
         assert_eq!(scene.frame.lit, seen, "a lamp at {height} m");
     }
+}
+
+/// What is looked for through the faces of a turbid cube changes nothing but the noise: inside it, and on a white block in
+/// the middle. The lamp is seen under some 20 degrees.
+#[test]
+fn looking_through_an_interface_gives_what_chance_gives_with_less_noise() {
+    let v = DVec3::new;
+    let (water, block) =
+        (cuboid(v(-1.0, -1.0, -1.0), v(1.0, 1.0, 0.0)), cuboid(v(-0.5, -0.5, -0.8), v(0.5, 0.5, -0.5)));
+    let lamp = parallelogram(v(2.0, -4.0, 20.0), DVec3::Y * 8.0, DVec3::X * 8.0);
+    let mut scene =
+        SceneFolder::new().mesh("water.ply", &water).mesh("block.ply", &block).mesh("lamp.ply", &lamp).scene(
+            "[media.water]\nior = 1.33\nabsorption = [0.1, 0.3, 0.5]\nscattering = 2\n\
+             phase = { kind = \"henyey-greenstein\", g = 0.8 }\n\
+             [[surfaces]]\nmesh = \"water.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"water\"\n\
+             material = { kind = \"dielectric\" }\n\
+             [[surfaces]]\nmesh = \"block.ply\"\nnormals = \"flat\"\nmaterial = { kind = \"diffuse\", reflectance = 0.8 }\n\
+             [[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = { kind = \"emitter\", radiance = 100 }\n\
+             [camera]\neye = [0, -3, 2]\ntarget = [0, 0, -0.6]\nup = [0, 0, 1]\nvertical_fov = 15\nresolution = [16, 16]\n",
+        );
+    assert!(scene.frame.beneath[1].is_some());
+    let (with, with_se) = scene.render(1024, 0).mean();
+    scene.frame.beneath = vec![None; 2];
+    scene.frame.lit = vec![true, false];
+    let (without, without_se) = scene.render(4096, 1).mean();
+    println!(
+        "looking through an interface: {with:.5} +- {with_se:.5}, by chance {without:.5} +- {without_se:.5}"
+    );
+    // Five standard errors, each below 1 % of the value.
+    let se = (with_se * with_se + without_se * without_se).map(f64::sqrt);
+    assert!(se.cmplt(0.01 * without).all(), "a standard error of {se} shows too little");
+    assert!((with - without).abs().cmplt(5.0 * se).all(), "{with} and {without}, standard error {se}");
+    let ratio = 0.5 * with_se.x / without_se.x;
+    println!("noise with over without, at as many samples: {ratio:.3}");
+    assert!(ratio < 0.5, "looking through the interface does not pay: {ratio}");
 }

@@ -1,0 +1,90 @@
+//! Light that reaches a vertex through one refracting interface.
+//!
+//! A direction is drawn from where compact lights are likely to be ([`crate::light::beneath`]) and followed through the
+//! interface that lies there. What it finds and what a path finds by chance that goes straight from the vertex through one
+//! interface into a light are weighted by the balance heuristic, with the densities of the direction at the vertex.
+
+use glam::Vec3;
+
+use super::direct::Receiver;
+use super::interface;
+use super::path::{LitVertex, Looked, Sample};
+use crate::accel::Ignored;
+use crate::geometry::Ray;
+use crate::light::{Beneath, balance};
+use crate::optics::medium::MediumId;
+use crate::scene::surface::Surface;
+use crate::spectrum::Lanes;
+
+impl<'a> Sample<'a> {
+    /// What next-event estimation has looked for at a vertex that a path leaves along `wi`.
+    pub(super) fn looked(&self, medium: MediumId, vertex: LitVertex, wi: Vec3) -> Looked {
+        match self.looks_beneath(medium) {
+            Some(beneath) => Looked::Beneath(balance(vertex.pdf_w, beneath.pdf_w(wi))),
+            None => Looked::Straight(vertex),
+        }
+    }
+
+    /// Where lights are looked for through an interface; photons carry that light where there are any.
+    pub(super) fn looks_beneath(&self, medium: MediumId) -> Option<&'a Beneath> {
+        self.frame.beneath[medium.0 as usize].as_ref().filter(|_| self.photons.is_none())
+    }
+
+    /// Light in a direction drawn with `u`; `response` is as in [`Sample::direct`].
+    pub(super) fn beneath(
+        &mut self,
+        beneath: &Beneath,
+        receiver: &Receiver,
+        response: impl Fn(Vec3) -> (Lanes, f32),
+        u: [f32; 2],
+    ) -> Lanes {
+        let (wi, guess_w) = beneath.sample(u);
+        if guess_w <= 0.0 || receiver.normal.is_some_and(|hit| wi.dot(hit.ng) <= 0.0) {
+            return Lanes::ZERO;
+        }
+        let (value, pdf_w) = response(wi);
+        if value.max_element() <= 0.0 {
+            return Lanes::ZERO;
+        }
+        let weighted = value * (balance(guess_w, pdf_w) / guess_w);
+        let origin = receiver.normal.map_or(receiver.position, |hit| hit.point.spawn(hit.ng, wi));
+        weighted * self.light_through_interface(receiver, &Ray::new(origin, wi))
+    }
+
+    /// What a ray sees of the lights that are looked for, on its way through one interface.
+    fn light_through_interface(&mut self, receiver: &Receiver, ray: &Ray) -> Lanes {
+        let frame = self.frame;
+        self.scratch.counters.shadow_rays += 1;
+        let Some(hit) = frame.accel.closest(ray, Ignored::one(receiver.leaves)) else { return Lanes::ZERO };
+        let Surface::Interface(pair) = frame.surface(hit.triangle) else { return Lanes::ZERO };
+        let (incident, beyond) = pair.crossed(hit.from_front);
+        // From the wrong side rounding has met it.
+        if pair.matched || incident != receiver.medium {
+            return Lanes::ZERO;
+        }
+        let point = frame.geometry.surface_hit(&hit, ray.direction);
+        let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
+        let ways = interface::ways(-ray.direction, point.ns, point.ng, eta_t_over_i);
+        let Some(direction) = ways.refracted else { return Lanes::ZERO };
+        let passed = (1.0 - ways.reflectance) * self.index_factor(incident, beyond);
+        let left = self.transmittance_of(incident, ray, 0.0, hit.t) * passed;
+        left * self.light_along(&Ray::new(point.point.position, direction), hit.triangle, beyond)
+    }
+
+    /// The light at the end of a ray in `medium` that leaves triangle `leaves`, if nothing is in between.
+    fn light_along(&mut self, ray: &Ray, leaves: u32, medium: MediumId) -> Lanes {
+        let frame = self.frame;
+        self.scratch.counters.shadow_rays += 1;
+        let found = frame.accel.closest(ray, Ignored::one(leaves));
+        let (radiance, distance) = match found.map(|hit| (frame.surface(hit.triangle), hit)) {
+            Some((Surface::Emitter { radiance }, hit)) if hit.from_front => {
+                (radiance.lanes(self.wavelengths), hit.t)
+            }
+            None if frame.lights.environment.is_sampled() && !frame.endless[medium.0 as usize] => {
+                (frame.lights.environment.radiance(ray.direction, self.wavelengths), f32::INFINITY)
+            }
+            _ => return Lanes::ZERO,
+        };
+        radiance * self.transmittance_of(medium, ray, 0.0, distance)
+    }
+}
