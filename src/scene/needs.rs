@@ -107,7 +107,7 @@ impl Needs {
                 Self::SUN,
                 false,
                 if self.sun_behind_interface {
-                    "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out"
+                    "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out; integrator = \"photon\" follows it"
                 } else {
                     "no sun shines on a refracting interface"
                 },

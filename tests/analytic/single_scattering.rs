@@ -192,7 +192,7 @@ fn a_lamp_in_and_over_a_slab_lights_it_as_quadrature_says() {
             let mut scene = lit_slab(&slab, lamp);
             let name = format!("lamp {name} a slab of {} m", slab.depth);
             let most = 1e-2 * expected.max_element();
-            let with = scene.render(4096, 0);
+            let with = scene.render(8192, 0);
             assert_mean(&name, &with, expected, most);
             if slab.depth < 1.0 {
                 continue;

@@ -94,7 +94,6 @@ fn wavy_block(cells: u32) -> (TestMesh, TestMesh) {
         top.triangles.extend([[k, k + 1, k + n + 1], [k, k + n + 1, k + n]]);
     }
     let rim: Vec<u32> = (0..cells)
-        .map(|i| i)
         .chain((0..cells).map(|j| j * n + cells))
         .chain((0..cells).map(|i| n * n - 1 - i))
         .chain((0..cells).map(|j| (cells - j) * n))

@@ -16,7 +16,7 @@ fn error(picture: &Rendered, truth: &[DVec3]) -> f64 {
             count += 1.0;
         }
     }
-    (sum / count as f64).sqrt()
+    (sum / count).sqrt()
 }
 
 /// The mean over pictures of other seeds.
