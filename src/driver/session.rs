@@ -100,7 +100,7 @@ impl<'a> Session<'a> {
     ) -> Result<(), RenderError> {
         describe(record, assembled);
         let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
-        record.left_out = left_out.into_iter().map(Into::into).collect();
+        record.left_out.extend(left_out.into_iter().map(Into::into));
         for warning in &record.warnings {
             self.observer.warning(warning);
         }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
-use crate::integrator::{Counters, EyeSample, Integrator, PhotonMapper, PhotonPass, Scratch};
+use crate::integrator::{Counters, EyeSample, Integrator, PhotonFrame, PhotonPass, Scratch};
 use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
 use crate::scene::description::RenderDescription;
 use crate::scene::frame::Frame;
@@ -51,7 +51,14 @@ pub fn render_pixels(
     let [width, height] = frame.camera.resolution();
     let rects = tiles(width, height, TILE_SIZE);
     let (tiles, mut counters) = match &sampling.integrator {
-        Integrator::Photon(mapper) => passes(frame, sampling, mapper, &rects, progress),
+        Integrator::Photon(mapper) => {
+            let photons = mapper.prepare(frame, sampling.seed);
+            match photons.count() {
+                // Nothing emits photons, or nothing takes them.
+                0 => one_after_the_other(frame, sampling, &rects, progress),
+                _ => passes(frame, sampling, &photons, &rects, progress),
+            }
+        }
         _ => one_after_the_other(frame, sampling, &rects, progress),
     };
     let image = FrameImage::from_tiles(width, height, tiles);
@@ -88,11 +95,10 @@ fn one_after_the_other(
 fn passes(
     frame: &Frame,
     sampling: &Sampling,
-    mapper: &PhotonMapper,
+    of_all: &PhotonFrame,
     rects: &[TileRect],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (Vec<Tile>, Counters) {
-    let of_all = mapper.prepare(frame, sampling.seed);
     let mut sums: Vec<Vec<PixelAccumulator>> =
         rects.iter().map(|rect| vec![PixelAccumulator::new(); rect.area()]).collect();
     let mut counters = Counters::default();

@@ -25,7 +25,7 @@ use glam::Vec3;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use counters::Counters;
 pub use path::PathTracer;
-pub use photon::{PhotonMapper, PhotonPass};
+pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
 
 use crate::accel::Hit;

@@ -111,7 +111,7 @@ impl PhotonMapper {
         let mut prepared = PhotonFrame {
             mapper: *self,
             seed,
-            walks: emission.is_none() || path_sky || frame.needs.emission,
+            walks: path_sky || frame.needs.emission,
             lookups: match (&emission, self.settings.final_gather) {
                 (None, _) => 0,
                 (_, false) => 1,
