@@ -94,6 +94,7 @@ fn events_line(done: &[&FrameRecord]) -> Option<String> {
     done.iter().for_each(|r| total += r.counters);
     let events: Vec<String> = [
         (total.label_mismatches, "hits with mismatched labels"),
+        (total.astray_photons, "photons ended where they met a boundary of another medium"),
         (total.non_finite, "samples that were not finite"),
         (total.escaped_inside, "paths that left a fluid through a hole"),
         (total.depth_limited, "paths ended by max_depth"),

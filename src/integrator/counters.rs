@@ -13,6 +13,8 @@ pub struct Counters {
     pub untraced: u64,
     /// Photons emitted.
     pub photons: u64,
+    /// Photons that met a boundary of another medium than they were in, and ended there.
+    pub astray_photons: u64,
     /// Rays traced towards lights.
     pub shadow_rays: u64,
     /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
@@ -48,6 +50,7 @@ impl AddAssign for Counters {
         self.rays += other.rays;
         self.untraced += other.untraced;
         self.photons += other.photons;
+        self.astray_photons += other.astray_photons;
         self.shadow_rays += other.shadow_rays;
         self.label_mismatches += other.label_mismatches;
         self.non_finite += other.non_finite;

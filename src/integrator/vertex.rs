@@ -196,7 +196,7 @@ impl Sample<'_> {
         self.radiance += branch.throughput * radiance.lanes(self.wavelengths) * weight;
     }
 
-    pub(super) fn check_label(&mut self, branch: &Branch, pair: &MediumPair, hit: &SurfaceHit) {
+    fn check_label(&mut self, branch: &Branch, pair: &MediumPair, hit: &SurfaceHit) {
         if pair.crossed(hit.from_front).0 != branch.medium {
             self.scratch.counters.label_mismatches += 1;
         }

@@ -119,6 +119,7 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
     let documented = [
         "accel_bytes",
         "accel_bytes_per_triangle",
+        "astray_photons",
         "build_seconds",
         "cost_ratio",
         "cut",

@@ -54,5 +54,5 @@ fn s06_turbid_water_under_waves() {
 #[test]
 #[ignore = "a minute or more"]
 fn s08_a_caustic() {
-    check("s08_caustic", 200_000, 256, 0.005);
+    check("s08_caustic", 100_000, 96, 0.01);
 }

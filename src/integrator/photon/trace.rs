@@ -170,10 +170,14 @@ impl Walk<'_> {
         let frame = self.tracing.frame;
         let hit = frame.geometry.surface_hit(found, flying.branch.direction);
         match frame.surface(hit.triangle) {
+            // Light from below a model that is open there, say: no eye path sees where it has got to.
+            Surface::Interface(pair) if pair.crossed(hit.from_front).0 != flying.branch.medium => {
+                self.sample.scratch.counters.astray_photons += 1;
+                Fate::Ends
+            }
             Surface::Emitter { .. } => Fate::Ends,
             Surface::Interface(pair) if pair.matched => {
                 let (incident, beyond) = pair.crossed(hit.from_front);
-                self.sample.check_label(&flying.branch, pair, &hit);
                 // Where indices differ all the same, L / n^2 holds: its adjoint is the inverse of an eye path's factor.
                 flying.branch.enter(beyond, self.sample.index_factor(beyond, incident));
                 flying.branch.go_on(&hit, flying.branch.direction);
@@ -199,7 +203,6 @@ impl Walk<'_> {
             return Fate::Ends;
         }
         let (incident, beyond) = pair.crossed(hit.from_front);
-        self.sample.check_label(branch, pair, hit);
         let frame = self.tracing.frame;
         let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
         let ns = frame.geometry.interpolated_normal(found, hit.ng);
