@@ -356,7 +356,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nsimilarity = 1.5", 2, 14, "render.similarity: 1.5: write a whole number from 0 to 4"),
     ("[render]\nsplit = 17", 2, 9, "render.split: 17: write a whole number from 0 to 16"),
     ("[render]\nforced_scattering = 17", 2, 21, "render.forced_scattering: 17: write a whole number from 0 to 16"),
-    ("[render]\nphotons = { count = 100000001 }", 2, 21, "render.photons.count: 100000001: write a whole number from 0 to 100000000"),
+    ("[render]\nphotons = { count = 10000001 }", 2, 21, "render.photons.count: 10000001: write a whole number from 0 to 10000000"),
     ("[render]\nphotons = { radius = 0 }", 2, 22, "render.photons.radius: 0: write a length from 1e-9 to 1e9 metres"),
     ("[render]\nphotons = { volume_radius = nan }", 2, 29, "write a length from 1e-9 to 1e9 metres"),
     ("[render]\nphotons = { shrink = 1.5 }", 2, 22, "render.photons.shrink: 1.5: write a number from 0.01 to 1"),

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::interface;
-use super::path::{LitVertex, Looked, Sample};
+use super::path::{Branch, LitVertex, Looked, Sample};
 use crate::accel::Ignored;
 use crate::geometry::Ray;
 use crate::light::{Beneath, balance};
@@ -18,16 +18,18 @@ use crate::spectrum::Lanes;
 
 impl<'a> Sample<'a> {
     /// What next-event estimation has looked for at a vertex that a path leaves along `wi`.
-    pub(super) fn looked(&self, medium: MediumId, vertex: LitVertex, wi: Vec3) -> Looked {
-        match self.looks_beneath(medium) {
+    pub(super) fn looked(&self, branch: &Branch, vertex: LitVertex, wi: Vec3) -> Looked {
+        match self.looks_beneath(branch.medium, branch.interactions) {
             Some(beneath) => Looked::Beneath(balance(vertex.pdf_w, beneath.pdf_w(wi))),
             None => Looked::Straight(vertex),
         }
     }
 
-    /// Where lights are looked for through an interface; photons carry that light where there are any.
-    pub(super) fn looks_beneath(&self, medium: MediumId) -> Option<&'a Beneath> {
-        self.frame.beneath[medium.0 as usize].as_ref().filter(|_| self.photons.is_none())
+    /// Where lights are looked for through an interface from a vertex with so many interactions before it; photons carry
+    /// that light where there are any. The interface is an interaction too, for which `max_depth` must leave room.
+    pub(super) fn looks_beneath(&self, medium: MediumId, interactions: u32) -> Option<&'a Beneath> {
+        let has_room = interactions.saturating_add(1) < self.max_depth;
+        self.frame.beneath[medium.0 as usize].as_ref().filter(|_| has_room && self.photons.is_none())
     }
 
     /// Light in a direction drawn with `u`; `response` is as in [`Sample::direct`].

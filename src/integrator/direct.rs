@@ -25,6 +25,8 @@ pub(super) struct Receiver {
     pub(super) medium: MediumId,
     /// The triangle that shadow rays leave.
     pub(super) leaves: u32,
+    /// Interactions of the path before it.
+    pub(super) interactions: u32,
 }
 
 impl Sample<'_> {
@@ -39,7 +41,7 @@ impl Sample<'_> {
     ) -> Lanes {
         let u = stream.next4();
         let frame = self.frame;
-        if let Some(beneath) = self.looks_beneath(receiver.medium) {
+        if let Some(beneath) = self.looks_beneath(receiver.medium, receiver.interactions) {
             return self.beneath(beneath, receiver, response, [u[0], u[1]]);
         }
         let lights = &frame.lights;
@@ -60,6 +62,12 @@ impl Sample<'_> {
             }
         }
         sum
+    }
+
+    /// True where next-event estimation can find a light; photons carry what lies beneath interfaces.
+    pub(super) fn looks_for_lights(&self, medium: MediumId) -> bool {
+        self.frame.looks_for_lights(medium)
+            && (self.photons.is_none() || self.frame.beneath[medium.0 as usize].is_none())
     }
 
     /// True where eye paths find the light of the sky on their own.

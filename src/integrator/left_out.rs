@@ -12,7 +12,8 @@ impl Integrator {
                 Scattered::Once => Some("light scattered more than once"),
                 Scattered::Ambient => Some("all scattered light but an ambient one"),
             },
-            Self::Photon(_) => return Vec::new(),
+            Self::Photon(_) if !needs.turbid_air => return Vec::new(),
+            Self::Photon(_) => None,
             Self::AmbientOcclusion(_) => return vec!["all but the openness of the first surface"],
         };
         let of_the_sun = needs.sun_behind_interface.then_some("sunlight through refracting interfaces");
@@ -26,7 +27,7 @@ impl Integrator {
         lines
             .map(|(line, met)| match line.used && !met.used {
                 true => NeedLine { used: false, because: "the integrator does without", ..line },
-                false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_photons() => {
+                false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_photons(needs) => {
                     NeedLine { used: true, because: "photons carry it", ..line }
                 }
                 false => line,
@@ -35,8 +36,8 @@ impl Integrator {
             .collect()
     }
 
-    fn has_photons(&self) -> bool {
-        matches!(self, Self::Photon(_))
+    fn has_photons(&self, needs: &Needs) -> bool {
+        matches!(self, Self::Photon(_)) && !needs.turbid_air
     }
 
     /// A line for each photon map.
@@ -57,13 +58,18 @@ impl Integrator {
                 (Some(true), None) => NeedLine { part, used: true, because },
             }
         };
+        let air = (!needs.turbid_air, "the open air scatters: they would have to begin at infinity");
         let diffuse = (needs.diffuse, "no diffuse surface takes them");
         let specular = (needs.specular, "nothing bends or mirrors light");
         let scattering = (needs.scattering, "no medium in the frame scatters");
         [
-            takes("caustic photons", &[diffuse, specular], "specular surfaces turn light onto diffuse ones"),
-            takes("global photons", &[diffuse], "light is scattered onto diffuse surfaces"),
-            takes("volume photons", &[scattering], "a medium in the frame scatters"),
+            takes(
+                "caustic photons",
+                &[air, diffuse, specular],
+                "specular surfaces turn light onto diffuse ones",
+            ),
+            takes("global photons", &[air, diffuse], "light is scattered onto diffuse surfaces"),
+            takes("volume photons", &[air, scattering], "a medium in the frame scatters"),
         ]
     }
 
@@ -115,6 +121,9 @@ mod tests {
         }
         let photon = Integrator::Photon(PhotonMapper { path: PATH, settings: PhotonDescription::default() });
         assert!(photon.left_out(&sunny).is_empty());
+        let misty = Needs { turbid_air: true, lamps: true, ..sunny };
+        assert_eq!(photon.left_out(&misty), ["sunlight through refracting interfaces"]);
+        assert!(used(&photon, &misty).iter().all(|part| !part.ends_with("photons")));
         let maps =
             |needs: &Needs| used(&photon, needs).into_iter().filter(|p| p.ends_with("photons")).count();
         let lamp = Needs { lamps: true, ..diffuse };

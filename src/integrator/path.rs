@@ -260,10 +260,15 @@ impl Sample<'_> {
         let forward = branch.direction;
         // The scattered light of lamps is that of photons, where there are any.
         let lamps = self.photons.is_none();
-        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.frame.looks_for_lights(branch.medium);
+        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
         if lit {
-            let receiver =
-                Receiver { position: point, normal: None, medium: branch.medium, leaves: u32::MAX };
+            let receiver = Receiver {
+                position: point,
+                normal: None,
+                medium: branch.medium,
+                leaves: u32::MAX,
+                interactions: branch.interactions,
+            };
             let response = |wi: Vec3| {
                 let turned = Deflection::between(forward, wi);
                 (Lanes::splat(phase.value(turned)), phase.pdf_w(turned))
@@ -281,7 +286,7 @@ impl Sample<'_> {
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
         let vertex = LitVertex { position: point, pdf_w: turned.pdf_w, lamps };
-        let looked = if lit { self.looked(branch.medium, vertex, turned.wi) } else { Looked::Not };
+        let looked = if lit { self.looked(branch, vertex, turned.wi) } else { Looked::Not };
         branch.arrival = Arrival { specular_from_eye: false, looked };
         (branch.bounces, branch.steps) = (0, 0);
         branch.goes_on(u[3])

@@ -105,13 +105,14 @@ impl Sample<'_> {
         // Beyond the last vertex at which photons are asked for, the light of lamps is theirs.
         let lamps = self.photons.is_none() || branch.lookups_left > 0;
         branch.lookups_left = branch.lookups_left.saturating_sub(1);
-        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.frame.looks_for_lights(branch.medium);
+        let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
         if lit {
             let receiver = Receiver {
                 position: hit.point.position,
                 normal: Some(*hit),
                 medium: branch.medium,
                 leaves: hit.triangle,
+                interactions: branch.interactions,
             };
             let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
@@ -124,9 +125,12 @@ impl Sample<'_> {
         let own = pdf_w(wi);
         branch.throughput *= if guide.is_some() { albedo * (lobe.pdf_w(wi) / own) } else { albedo };
         let vertex = LitVertex { position: hit.point.position, pdf_w: own, lamps };
-        // A constant sky of photons is found by chance where it lights a surface straight.
-        let lit = lit || lamps && self.photons.is_some();
-        let looked = if lit { self.looked(branch.medium, vertex, wi) } else { Looked::Not };
+        let looked = match (lit, self.photons) {
+            (true, _) => self.looked(branch, vertex, wi),
+            // Nothing was looked for, yet light that comes straight is none of the photons': chance has all of it.
+            (false, Some(_)) if lamps => Looked::Straight(LitVertex { pdf_w: f32::INFINITY, ..vertex }),
+            _ => Looked::Not,
+        };
         branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
         branch.interacted(u[3])

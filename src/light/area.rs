@@ -115,9 +115,9 @@ impl AreaLights {
         }
     }
 
-    /// Centroid and bright side of each emitting triangle, in the order of [`EmitterPoint::entry`].
-    pub fn centroids(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
-        self.triangles.iter().map(|t| ((t.vertices[0] + t.vertices[1] + t.vertices[2]) / 3.0, t.normal))
+    /// Vertices and normal on the bright side of each emitting triangle, in the order of [`EmitterPoint::entry`].
+    pub fn bright_sides(&self) -> impl Iterator<Item = ([Vec3; 3], Vec3)> {
+        self.triangles.iter().map(|t| (t.vertices, t.normal))
     }
 
     /// Density per solid angle with which triangle `id`, seen at `distance` along `wi`, would have been sampled.

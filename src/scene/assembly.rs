@@ -304,6 +304,7 @@ impl<'a> Assembly<'a> {
             diffuse,
             specular: self.parts.pairs.keys().any(|p| !p.matched)
                 || self.parts.surfaces.iter().any(|s| matches!(s, Surface::Conductor { .. })),
+            turbid_air: !media[0].sigma_s.is_zero(),
             lamps: lights.sun.is_some() || lights.area.is_some(),
             sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
             peaked_sky: lights.environment.is_peaked(),

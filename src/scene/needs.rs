@@ -23,6 +23,8 @@ pub struct Needs {
     pub diffuse: bool,
     /// There are interfaces that refract, or metals.
     pub specular: bool,
+    /// The open air scatters: there are no photons then.
+    pub turbid_air: bool,
     /// There are a sun or emitters.
     pub lamps: bool,
     /// The sky is not black.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use floe::integrator::Integrator;
 use glam::DVec3;
 
 use super::estimates::{assert_mean, polygon_irradiance};
@@ -110,6 +111,12 @@ fn looking_through_an_interface_gives_what_chance_gives_with_less_noise() {
              [camera]\neye = [0, -3, 2]\ntarget = [0, 0, -0.6]\nup = [0, 0, 1]\nvertical_fov = 15\nresolution = [16, 16]\n",
         );
     assert!(scene.frame.beneath[1].is_some());
+    // From the block two surfaces and a particle or an interface are three interactions.
+    let Integrator::Path(path) = &mut scene.sampling.integrator else { panic!("not path traced") };
+    path.max_depth = 2;
+    assert_eq!(scene.render(64, 0).mean().0, DVec3::ZERO, "interactions beyond max_depth");
+    let Integrator::Path(path) = &mut scene.sampling.integrator else { panic!("not path traced") };
+    path.max_depth = 0;
     let (with, with_se) = scene.render(1024, 0).mean();
     scene.frame.beneath = vec![None; 2];
     scene.frame.lit = vec![true, false];

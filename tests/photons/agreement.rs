@@ -134,14 +134,54 @@ fn a_sky_of_photons_and_everything_else() {
     compare(&folder, text, &settings, 0.03, [48, 512]);
 }
 
-/// Where nothing takes photons, or no light emits them, the pictures are those of eye paths.
+/// A lamp that stands in water, half in it and half in the air: no medium is that of all of it. A quarter of the light
+/// below was lost where chance's weight counted an estimate that was not made.
+#[test]
+fn a_lamp_that_reaches_into_water() {
+    let v = DVec3::new;
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("lamp.ply", &parallelogram(v(-0.2, 0.3, 0.06), v(0.0, 0.0, 1.0), v(0.5, 0.1, 0.0)).turned())
+        .mesh("pool.ply", &cuboid(v(-0.7, -0.7, 0.05), v(0.7, 0.7, 0.5)))
+        .mesh("inner.ply", &parallelogram(v(-0.69, -0.69, 0.06), v(1.38, 0.0, 0.0), v(0.0, 1.38, 0.0)));
+    let text = "[media.water]\nior = 1.33\nabsorption = [0.5, 0.2, 0.1]\n\
+                [[surfaces]]\nmesh = \"pool.ply\"\nfront = \"air\"\nback = \"water\"\nnormals = \"flat\"\n\
+                material = { kind = \"dielectric\" }\n\
+                [[surfaces]]\nmesh = \"inner.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0.5 }\n";
+    let photons = "[render]\nintegrator = \"photon\"\nphotons = { count = 20000 }\n";
+    let by_photons = with_radius(scene(&folder, &format!("{text}{photons}")), 0.02);
+    let lower = |scene: &Prepared, samples| Seeds::render(scene, samples, 4, [4, 2]).means().split_off(4);
+    assert_agree("lamp in water", &lower(&by_photons, 24), &lower(&scene(&folder, text), 512), 0.05);
+}
+
+/// As many photons as there are kinds of light, and fewer.
+#[test]
+fn few_photons_carry_all_the_light() {
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("lamp.ply", &lamp())
+        .mesh("wall.ply", &parallelogram(DVec3::new(-1.5, 1.0, 0.0), DVec3::X * 3.0, DVec3::Z * 1.5));
+    let wall = "[sun]\ndirection = [0.3, -0.6, 0.7]\nirradiance = 4\nangular_diameter = 10\n\
+                [[surfaces]]\nmesh = \"wall.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0.8 }\n";
+    let by_paths = Seeds::render(&scene(&folder, wall), 256, 4, [1, 1]).means();
+    for count in [1, 4] {
+        let photons = format!("photons = {{ count = {count}, final_gather = false, radius = 0.2 }}");
+        let text = format!("{wall}[render]\nintegrator = \"photon\"\n{photons}\n");
+        let by_photons = Seeds::render(&with_radius(scene(&folder, &text), 0.05), 800, 4, [1, 1]).means();
+        assert_agree(&format!("{count} photons"), &by_photons, &by_paths, 0.05);
+    }
+}
+
+/// Where nothing takes photons, no light emits them, or the air scatters, the pictures are those of eye paths.
 #[test]
 fn without_photons_there_is_path_tracing() {
     let folder = SceneFolder::new().mesh("cube.ply", &cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)));
     let cube = "[media.water]\nior = 1.33\nabsorption = [1, 0.5, 0.2]\n[[surfaces]]\nmesh = \"cube.ply\"\nfront = \"air\"\n\
                 back = \"water\"\nmaterial = { kind = \"dielectric\" }\n[sky]\nradiance = [1, 2, 3]\n";
     let turbid = cube.replace("absorption", "scattering = 2\nabsorption");
-    for (text, lamp) in [(cube, "[sun]\ndirection = [0, 0, 1]\nirradiance = 1\n"), (turbid.as_str(), "")] {
+    let misty = format!("[media.air]\nscattering = 0.3\ndensity = {{ stratified = -2 }}\n{turbid}");
+    let sun = "[sun]\ndirection = [0, 0, 1]\nirradiance = 1\n";
+    for (text, lamp) in [(cube, sun), (turbid.as_str(), ""), (misty.as_str(), sun)] {
         let picture = |render: &str| {
             let scene = folder.scene(&format!("{text}{lamp}{VIEW}[render]\n{render}"));
             assert_eq!(matches!(scene.sampling.integrator, Integrator::Photon(_)), !render.is_empty());

@@ -42,7 +42,8 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     top / logs.iter().map(|(x, _)| (x - mx) * (x - mx)).sum::<f64>()
 }
 
-/// A pool of clear water under waves in the sun of s06's tank: the light of all pixels is that of caustics.
+/// The box of fog, all of whose light is that of photons around the eye's rays: its error falls with the passes, and
+/// the bias of fixed radii with the radius, about in proportion to it, since it stems from the edges of the box.
 #[test]
 #[ignore = "some minutes: the error of progressive passes, and the bias of fixed radii"]
 fn errors_fall_as_the_cube_root_of_the_passes() {

@@ -7,7 +7,7 @@
 //!   the scene. Where the scene reaches much farther than what the eye sees, points lie log-uniformly around that, so that
 //!   each octave of distance gets as many; those farther out are spread as much wider as their neighbours are farther away.
 //! * Emitting triangles: a point by power, and a direction in the cone around the sphere of all that does not emit; by the
-//!   cosine where the point is inside of it, or where the open air scatters.
+//!   cosine where the point is inside of it.
 //!
 //! Kinds that are there get equal numbers: photons 0, k, 2k, .. of k kinds are the first's.
 
@@ -48,8 +48,8 @@ pub(super) struct Emission {
     scene: Ball,
     /// Around what the eye sees.
     seen: Ball,
-    /// The medium before each emitting triangle, by its entry among the lights.
-    starts: Vec<MediumId>,
+    /// The medium before each emitting triangle, by its entry among the lights; `None` where an interface crosses it.
+    starts: Vec<Option<MediumId>>,
 }
 
 /// The start of a photon.
@@ -79,7 +79,7 @@ impl Emission {
         ];
         let scene = scene_ball(frame);
         let starts = lights.area.as_ref().map_or_else(Vec::new, |area| {
-            area.centroids().map(|(point, normal)| medium_before(frame, point, normal)).collect()
+            area.bright_sides().map(|(corners, normal)| medium_of_triangle(frame, &corners, normal)).collect()
         });
         Self { kinds: kinds.into_iter().flatten().collect(), scene, seen: seen_ball(frame, scene), starts }
     }
@@ -131,7 +131,8 @@ impl Emission {
     ) -> Option<Emitted> {
         let basis = Basis::around(light.wi);
         let (offset, pdf_a, near, spread) = if self.scene.radius > FAR * self.seen.radius {
-            let (offset, pdf_a) = log_uniform_disc(u, self.seen.radius, 2.0 * self.scene.radius);
+            let reach = self.scene.radius + self.scene.centre.distance(self.seen.centre);
+            let (offset, pdf_a) = log_uniform_disc(u, self.seen.radius, reach);
             let relative = offset.length_squared() / (self.seen.radius * self.seen.radius);
             (offset, pdf_a, self.seen, (1.0 + relative).sqrt())
         } else {
@@ -142,6 +143,9 @@ impl Emission {
         if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
             // What is seen does not reach out of the scene there: start beyond all of it, with coarser coordinates.
             origin += light.wi * 2.0 * self.scene.radius;
+            if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
+                return None;
+            }
         }
         let open_air = &frame.media[0];
         let back = Ray::new(origin, light.wi);
@@ -172,7 +176,7 @@ impl Emission {
         let towards = self.scene.centre - point.position;
         let distance = towards.length();
         let sine = self.scene.radius / distance;
-        let is_aimed = sine < 0.999 && frame.media[0].sigma_s.is_zero();
+        let is_aimed = sine < 0.999;
         let (direction, pdf_w) = if is_aimed {
             let one_minus_cos = sine * sine / (1.0 + (1.0 - sine * sine).sqrt());
             let local = warp::cone([u[2], u[3]], one_minus_cos);
@@ -189,7 +193,8 @@ impl Emission {
             origin: point.position,
             direction,
             leaves: point.triangle,
-            medium: self.starts[point.entry],
+            medium: self.starts[point.entry]
+                .unwrap_or_else(|| medium_before(frame, point.position, point.normal)),
             flux: point.radiance * (cos / (point.pdf_a * pdf_w)),
             spread: 1.0,
         })
@@ -227,7 +232,9 @@ fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     for i in 0..RAYS * RAYS {
         let (x, y) = ((i % RAYS) as f32 + 0.5, (i / RAYS) as f32 + 0.5);
         let ray = frame.camera.ray(x * width, y * height);
-        seen.extend(frame.accel.closest(&ray, Ignored::NOTHING).map(|hit| ray.at(hit.t)));
+        let hit = frame.accel.closest(&ray, Ignored::NOTHING);
+        let hit = hit.filter(|hit| !matches!(frame.surface(hit.triangle), Surface::Emitter { .. }));
+        seen.extend(hit.map(|hit| ray.at(hit.t)));
     }
     if seen.is_empty() {
         return scene;
@@ -241,9 +248,17 @@ fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     if radius > 0.0 { Ball { centre, radius } } else { scene }
 }
 
-/// The medium on the bright side of an emitting triangle.
+/// The medium on the bright side of an emitting triangle, where it is the same at the centroid and near the corners.
+fn medium_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3) -> Option<MediumId> {
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let medium = medium_before(frame, centroid, normal);
+    let is_same = |corner: &Vec3| medium_before(frame, corner.lerp(centroid, 1e-3), normal) == medium;
+    corners.iter().all(is_same).then_some(medium)
+}
+
+/// The medium on the bright side of a point on an emitting triangle.
 fn medium_before(frame: &Frame, point: Vec3, normal: Vec3) -> MediumId {
-    if frame.media.len() == 1 {
+    if !frame.needs.specular && !frame.needs.matched_interfaces {
         return MediumId(0);
     }
     // A little in front of it, so that an interface that it touches is seen from the bright side.

@@ -4,8 +4,8 @@
 //! surface:  L = (albedo / pi) sum_p flux_p k(d_p / r) / (pi r^2)                              [JENSEN96 eq. 6]
 //! ray:      L = sum_p p(omega_p -> eye) T(t_p) flux_p k(d_p / r) / (pi r^2)                   [JAROSZ08 eq. 17]
 //! ```
-//! r is the photon's reach. On a surface d is the distance to the photon, along a ray it is that of the photon to the ray, at distance t. A
-//! photon counts only in the medium and on the side of the surface where it has arrived.
+//! r is the photon's reach. On a surface d is the distance to the photon, along a ray it is that of the photon to the ray,
+//! at distance t. On a surface a photon counts on the side where it has arrived, in a medium only there.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -42,6 +42,10 @@ fn kernel(pass: &PhotonPass, squared: f32, reach: f32) -> f32 {
     profile(pass.kernel, squared * inverse) * (FRAC_1_PI * inverse)
 }
 
+/// Beyond the ends of a ray photons are looked for over so many of their reaches: a ray that meets a plane at less than
+/// 1.8 degrees would reach farther, but surfaces are no planes so far.
+const STEEPEST: f32 = 32.0;
+
 impl Sample<'_> {
     /// Radiance that arrives at the start of a ray from photons scattered into it; `end` is the triangle that it ends on.
     ///
@@ -64,7 +68,7 @@ impl Sample<'_> {
         let geometry = &self.frame.geometry;
         let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
         let slopes = [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction)));
-        let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length));
+        let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length).min(STEEPEST));
         let before = slopes[0].unwrap_or(Vec3::ZERO);
         let mut sum = Lanes::ZERO;
         pass.volume.each_around_ray(ray, beyond, |photon, along, squared, reach| {

@@ -14,6 +14,9 @@
 //! | ... within the peak of its phase function | eye paths that turn there and go on asking; [`peak`] |
 //! | of any other sky, and of media that emit | eye paths alone, which go on as in path tracing |
 //!
+//! Where the open air itself scatters there are no photons, which would have to begin at infinity: eye paths find all that
+//! path tracing finds. Photons and eye paths may each have as many interactions as `max_depth` says.
+//!
 //! Photons carry the light of the sky where a medium scatters, since eye paths would have to walk through it, and where
 //! a small part of the sky has most of its light; `sky = true` or `false` decides otherwise.
 
@@ -89,8 +92,10 @@ pub struct PhotonPass {
 }
 
 /// Photons that tell how many arrive in media, and photons that tell the radii, at most.
-const FIRST_PILOT: u32 = 512;
+const FIRST_PILOT: u32 = 2048;
 const PILOT: u32 = 65_536;
+/// The part of the collisions in media that the first of these keep.
+const FIRST_SHARE: f32 = 1.0 / 64.0;
 /// Photons kept in media for each that is emitted, about.
 const KEPT_IN_MEDIA: f32 = 4.0;
 /// Names the numbers of photons apart from those of pixels.
@@ -101,11 +106,12 @@ impl PhotonMapper {
     pub fn prepare(&self, frame: &Frame, seed: SampleSeed) -> PhotonFrame {
         let [width, height] = frame.camera.resolution();
         let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
-        let count = if self.settings.count == 0 { pixels } else { self.settings.count };
+        // At least one for each kind of light.
+        let count = if self.settings.count == 0 { pixels } else { self.settings.count.max(3) };
         let environment = &frame.lights.environment;
         let shines = environment.is_sampled() || environment.is_constant_light();
         let sky = shines && self.settings.sky.unwrap_or(frame.needs.scattering || environment.is_peaked());
-        let takes = frame.needs.diffuse || frame.needs.scattering;
+        let takes = (frame.needs.diffuse || frame.needs.scattering) && !frame.needs.turbid_air;
         let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());
         let path_sky = shines && !sky;
         let mut prepared = PhotonFrame {
@@ -120,7 +126,7 @@ impl PhotonMapper {
             sky: sky && emission.is_some(),
             emission,
             count,
-            volume_share: 1.0,
+            volume_share: FIRST_SHARE,
             radii: Radii { caustic: 0.0, global: 0.0, volume: 0.0 },
         };
         prepared.run_pilots(frame);
@@ -187,7 +193,7 @@ impl PhotonFrame {
     fn run_pilots(&mut self, frame: &Frame) {
         let (wavelengths, stream) = self.numbers(frame, 0);
         let first = self.trace(frame, &wavelengths, FIRST_PILOT, &stream);
-        let in_media = first.volume.len() as f32 / FIRST_PILOT as f32;
+        let in_media = first.volume.len() as f32 / (FIRST_PILOT as f32 * FIRST_SHARE);
         self.volume_share = (KEPT_IN_MEDIA / in_media).min(1.0);
         let count = self.count.min(PILOT);
         let pilot = self.trace(frame, &wavelengths, count, &stream);

@@ -58,8 +58,8 @@ const KERNELS: [(&str, KernelKind); 3] = [
     ("epanechnikov", KernelKind::Epanechnikov),
 ];
 
-/// Most photons in a pass: a map of them takes some 10 GB.
-const MOST_PHOTONS: i128 = 100_000_000;
+/// Most photons in a pass. While their maps are made they take up to 1 kB each in media that scatter: 10 GB.
+const MOST_PHOTONS: i128 = 10_000_000;
 
 /// Most interface hits, and ways through media, at which both branches are followed: the paths double at each.
 const MOST_SPLITS: i128 = 16;
