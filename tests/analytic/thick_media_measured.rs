@@ -7,7 +7,8 @@ use floe::optics::similarity::Reduction;
 use floe::spectrum::LaneCurve;
 use glam::DVec3;
 
-use super::thick_media::{LAYER, TRAY, assert_same_mean, trace_every_flight, tray};
+use super::led_walks::{EVEN, Layer, PICTURE, folder, lead};
+use super::thick_media::{ABOVE, BELOW, LAYER, TRAY, assert_same_mean, trace_every_flight, tray};
 use super::walls::sky_picture;
 use crate::common::mesh::{TestMesh, sphere};
 use crate::common::render::{Prepared, Rendered};
@@ -167,4 +168,29 @@ fn compare_blocks(exact: &Rendered, other: &Rendered) {
     let [rms, noise, worst] =
         [(square / count).sqrt(), f64::sqrt(noise / count), worst].map(|part: f64| 100.0 * part);
     println!("    blocks of 20 x 20, green: rms {rms:.2} % of which noise {noise:.2} %, worst {worst:.2} %");
+}
+
+/// Prints how many times less time walks that are led take to equal error, and how many times less their variance is.
+#[test]
+#[ignore = "minutes"]
+fn what_leading_walks_is_worth() {
+    let folder = folder();
+    for (sky, view, thickness) in [(PICTURE, ABOVE, 40.0), (EVEN, ABOVE, 40.0), (EVEN, BELOW, 4.0)] {
+        for (n, g) in [(1.0, 0.0), (1.31, 0.0), (1.0, 0.86), (1.31, 0.86)] {
+            let mut line = format!("{sky}, {thickness}, n {n}, g {g}:");
+            for albedo in [0.5, 0.7, 0.9, 0.99, 0.998] {
+                let mut scene = Layer { n, g, thickness, albedos: [albedo; 3] }.scene(&folder, sky, view);
+                let (mut square, mut seconds) = ([0.0; 2], [0.0; 2]);
+                for (seed, is_led) in (0..3).flat_map(|seed| [(seed, false), (seed, true)]) {
+                    lead(&mut scene, is_led);
+                    let (picture, time) = timed(&scene, 256, seed);
+                    square[usize::from(is_led)] += picture.mean().1.y.powi(2);
+                    seconds[usize::from(is_led)] += time;
+                }
+                let less = square[0] / square[1];
+                line += &format!(" | {albedo}: {:.2} ({less:.2})", less * seconds[0] / seconds[1]);
+            }
+            println!("{line}");
+        }
+    }
 }
