@@ -5,8 +5,10 @@
 //! the direction; between both the throughput is that of arriving at the particle. Flights that are forced, and those of
 //! photons, are not led.
 
+use glam::Vec3;
+
 use super::Scratch;
-use super::flight::{Event, rounding};
+use super::flight::{Clearing, Event, rounding};
 use super::path::{Branch, Sample};
 use crate::geometry::Ray;
 use crate::optics::dwivedi::{Dwivedi, Led, LedFlight};
@@ -28,7 +30,7 @@ impl Sample<'_> {
     #[inline]
     pub(super) fn led(&self, branch: &Branch) -> Option<Led> {
         let dwivedi = self.scratch.led.get(branch.medium.0 as usize)?.as_ref()?;
-        let knows_where = branch.outward != glam::Vec3::ZERO;
+        let knows_where = branch.outward != Vec3::ZERO;
         let goes_freely = branch.forced_left == 0 && branch.scatterings_left > 1;
         (knows_where && goes_freely).then(|| dwivedi.at(branch.direction, branch.outward, branch.throughput))
     }
@@ -47,7 +49,7 @@ impl Sample<'_> {
             let t_max = distance + rounding(branch.origin, distance);
             if let Some(hit) = self.nearest(branch, &Ray { t_max, ..ray }) {
                 branch.throughput *= flight.pass_weight(&medium, hit.t);
-                branch.clearing = super::flight::Clearing::NONE;
+                branch.clearing = Clearing::NONE;
                 return Event::Surface(hit);
             }
             branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);

@@ -132,6 +132,16 @@ impl Dwivedi {
     }
 }
 
+/// kappa in 1/m of isotropic scattering, or of what is similar to it.
+pub fn decay(sigma_s: f32, sigma_a: f32) -> f32 {
+    let sigma_t = sigma_s + sigma_a;
+    if sigma_s <= 0.0 {
+        return sigma_t;
+    }
+    let albedo = Vec4::splat((sigma_s / sigma_t).clamp(LEAST_ALBEDO, MOST_ALBEDO));
+    sigma_t / (1.0 + beyond_one(albedo).x)
+}
+
 /// nu - 1 of an albedo of isotropic scattering.
 fn beyond_one(albedo: Vec4) -> Vec4 {
     let exponent = Vec4::splat(2.442_94) - albedo * 0.021_581_3 + Vec4::splat(0.578_637) / albedo;

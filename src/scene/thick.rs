@@ -6,11 +6,12 @@
 //! Where tau* is [`THICK`] or more, scattering is replaced by what is similar to it ([`crate::optics::similarity`]).
 //! Media of varying density are left alone: somewhere they are thin.
 //!
-//! Thick media that absorb lead their walks to the surface ([`crate::optics::dwivedi`]), which changes no expectation.
+//! Media that absorb and let next to nothing through lead their walks to the surface ([`crate::optics::dwivedi`]), which changes no expectation.
 
 use super::geometry::Geometry;
 use super::surface::{MediumPair, Surface};
 use crate::geometry::Bounds;
+use crate::optics::dwivedi;
 use crate::optics::medium::{Medium, MediumId};
 use crate::optics::similarity::Reduction;
 use crate::spectrum::LaneCurve;
@@ -20,6 +21,8 @@ pub const THICK: f32 = 4.0;
 
 /// Reduced albedos, greatest of all lanes, whose walks are led to the surface; measured, see [`crate::integrator`].
 const LED: std::ops::RangeInclusive<f32> = 0.7..=0.998;
+/// kappa d from which on they are: light falls off as exp(-kappa z). Walks to the far side get weights like its inverse.
+const OPAQUE: f32 = 10.0;
 
 /// A medium whose scattering was replaced in a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,17 +63,24 @@ pub(super) fn reduce(
 /// The media of a frame whose walks are worth leading to the surface.
 pub(super) fn led(media: &[Medium], endless: &[bool], extents: impl Fn(MediumId) -> f32) -> Vec<bool> {
     let is_led = |(medium, id): (&Medium, MediumId)| {
-        is_worth_leading(medium) && is_thick(medium, endless[id.0 as usize], || extents(id))
+        is_worth_leading(medium) && (endless[id.0 as usize] || is_opaque(medium, extents(id)))
     };
     media.iter().zip((0..).map(MediumId)).map(is_led).collect()
 }
 
 /// True where much is absorbed, but not nearly all.
 fn is_worth_leading(medium: &Medium) -> bool {
-    let g = medium.phase.mean_cosine();
-    let albedo = |s: f32, a: f32| if s > 0.0 { s * (1.0 - g) / (s * (1.0 - g) + a) } else { 0.0 };
+    let rest = 1.0 - medium.phase.mean_cosine();
+    let albedo = |s: f32, a: f32| if s > 0.0 { s * rest / (s * rest + a) } else { 0.0 };
     let albedo = medium.sigma_s.combined(&medium.sigma_a, albedo).maximum();
     medium.density.is_homogeneous() && medium.phase.is_sampled_exactly() && LED.contains(&albedo)
+}
+
+/// True where walks that are led the wrong way do not matter: next to no light gets through.
+fn is_opaque(medium: &Medium, extent: f32) -> bool {
+    let rest = 1.0 - medium.phase.mean_cosine();
+    let kappa = medium.sigma_s.combined(&medium.sigma_a, |s, a| dwivedi::decay(s * rest, a));
+    kappa.minimum() * extent >= OPAQUE
 }
 
 /// True where the reduced optical size is [`THICK`] or more.
