@@ -17,6 +17,7 @@ mod analytic {
     mod furnaces;
     mod half_space;
     mod lamps;
+    mod led_walks;
     mod limits;
     mod media;
     mod single_scattering;

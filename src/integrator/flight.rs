@@ -48,7 +48,7 @@ impl Clearing {
 
     /// The path has collided at a point outside of the ball.
     #[inline]
-    fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel) {
+    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel) {
         self.radius = -1.0;
         self.collisions += 1;
         if self.collisions >= self.patience {
@@ -182,7 +182,7 @@ impl Sample<'_> {
     /// and at the edges of wedges it decides which sheet seems nearest; the labels tell which is meant. One that does
     /// not belong to the path's medium is looked through where rounding alone may have made it be met, and gives way
     /// elsewhere to one that does belong and is as far away.
-    fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
+    pub(super) fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
         self.scratch.counters.rays += 1;
         let (mut from, mut passed) = (*ray, 0.0);
         let mut ignored = Ignored::one(branch.leaves);
@@ -231,6 +231,6 @@ impl Sample<'_> {
 /// How far a point at `distance` from `origin` may be off; where a surface is that near, the path meets it.
 ///
 /// Without this slack a particle next to a surface comes to lie beyond it, and its path goes on in the wrong medium.
-fn rounding(origin: Vec3, distance: f32) -> f32 {
+pub(super) fn rounding(origin: Vec3, distance: f32) -> f32 {
     8.0 * f32::EPSILON * (origin.abs().max_element() + distance)
 }

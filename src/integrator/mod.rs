@@ -13,6 +13,7 @@ mod direct;
 mod flight;
 mod forced;
 mod interface;
+mod led;
 mod left_out;
 pub mod path;
 pub mod photon;
@@ -29,6 +30,7 @@ pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
 
 use crate::accel::Hit;
+use crate::optics::dwivedi::Dwivedi;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
 use crate::scene::description::{IntegratorKind, RenderDescription};
@@ -65,6 +67,8 @@ pub struct Scratch {
     /// What an endless depth of every medium adds to a path ([`crate::optics::medium::Medium::source`]); empty where
     /// none adds anything.
     pub(crate) sources: Vec<Lanes>,
+    /// How every medium leads its walks; empty where none does.
+    pub(crate) led: Vec<Option<Dwivedi>>,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
@@ -82,6 +86,7 @@ impl Scratch {
         if frame.needs.emission || ambient != Lanes::ZERO {
             self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths, ambient)));
         }
+        self.led.clear();
         self.branches.clear();
         // Another scene may have had some.
         self.crossings.clear();

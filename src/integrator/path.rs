@@ -14,6 +14,7 @@ use super::photon::{self, PhotonPass};
 use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
+use crate::optics::dwivedi::LedFlight;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
@@ -80,6 +81,10 @@ pub struct Branch {
     pub(super) lookups_left: u8,
     pub(super) arrival: Arrival,
     pub(super) clearing: Clearing,
+    /// Out of its medium at the interface of it that it has met last; zero before any.
+    pub(super) outward: Vec3,
+    /// The flight that the particle which it leaves has drawn.
+    pub(super) led: LedFlight,
     pub(super) stream: SampleStream,
 }
 
@@ -168,6 +173,9 @@ impl PathTracer {
             Sample { frame, scratch, wavelengths, max_depth, photons, radiance: Lanes::ZERO, first: None };
         // Light transport is compiled five times over what the scene needs in its inner loop.
         let varied = frame.needs.heterogeneous || !sample.scratch.sources.is_empty() || photons.is_some();
+        if !varied {
+            sample.scratch.lead(frame);
+        }
         match (varied, frame.needs.scattering, frame.needs.direct_light) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
@@ -207,6 +215,7 @@ impl Sample<'_> {
         if SCATTERING
             && !VARIED
             && branch.clearing.is_there()
+            && !branch.led.is_there()
             && !(DIRECT && self.frame.looks_for_lights(branch.medium))
         {
             // The ball is left when the walk in it ends, or a flight of its own would end.
@@ -216,7 +225,9 @@ impl Sample<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
-        let event = if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
+        let event = if SCATTERING && !VARIED && branch.led.is_there() {
+            self.fly_led(branch, u[0])
+        } else if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
             self.fly_and_scatter::<DIRECT, VARIED>(branch)
         } else {
             self.fly::<SCATTERING, VARIED>(branch, u[0])
@@ -261,6 +272,7 @@ impl Sample<'_> {
         // The scattered light of lamps is that of photons, where there are any.
         let lamps = self.photons.is_none();
         let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
+        let led = self.led(branch);
         if lit {
             let receiver = Receiver {
                 position: point,
@@ -271,12 +283,21 @@ impl Sample<'_> {
             };
             let response = |wi: Vec3| {
                 let turned = Deflection::between(forward, wi);
-                (Lanes::splat(phase.value(turned)), phase.pdf_w(turned))
+                let phase_w = phase.pdf_w(turned);
+                let pdf_w = led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w));
+                (Lanes::splat(phase.value(turned)), pdf_w)
             };
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let turned = phase.sample(forward, [u[1], u[2]]);
+        let turned = match &led {
+            None => phase.sample(forward, [u[1], u[2]]),
+            Some(led) => {
+                let (turned, flight) = led.sample(phase, &mut branch.stream);
+                branch.led = flight;
+                turned
+            }
+        };
         if self.photons.is_some() && !photon::is_peak(turned.weight * turned.pdf_w) {
             branch.lookups_left = 0;
         }
@@ -365,6 +386,8 @@ impl Branch {
             lookups_left: 0,
             arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
             clearing: Clearing::NONE,
+            outward: Vec3::ZERO,
+            led: LedFlight::NONE,
             stream,
         }
     }

@@ -220,6 +220,7 @@ impl Branch {
         self.origin = hit.point.position;
         self.direction = direction;
         self.leaves = hit.triangle;
+        self.outward = if direction.dot(hit.ng) > 0.0 { -hit.ng } else { hit.ng };
     }
 
     /// Starts again from an opaque surface along `direction`.

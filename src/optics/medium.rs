@@ -223,7 +223,7 @@ impl MediumLanes {
 
 /// A lane at `u` of weights that sum to 1, and where in its share u lies, below 1.
 #[inline]
-fn pick(weights: Lanes, u: f32) -> (usize, f32) {
+pub(super) fn pick(weights: Lanes, u: f32) -> (usize, f32) {
     let mut lane = 0;
     let mut rest = u;
     while lane < 3 && rest >= weights[lane] {

@@ -7,6 +7,7 @@
 //! that the light, or the path, comes from. Coefficients are in 1/m, wavelengths in nm in vacuum.
 
 pub mod density;
+pub mod dwivedi;
 pub mod fresnel;
 pub mod ice;
 pub mod medium;

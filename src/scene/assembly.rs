@@ -205,6 +205,7 @@ impl<'a> Assembly<'a> {
     fn finish(self, mut media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
         let world = self.world;
         let reduced = self.reduce(&mut media);
+        let led = self.led(&media);
         let lights = Lights {
             environment: world.environment.clone(),
             sun: world.sun.clone(),
@@ -243,6 +244,7 @@ impl<'a> Assembly<'a> {
                 endless: self.endless,
                 lit,
                 beneath,
+                led,
                 geometry: self.parts.geometry,
                 surfaces: self.parts.surfaces,
                 accel,
@@ -263,6 +265,11 @@ impl<'a> Assembly<'a> {
         let order = self.world.description.render.similarity;
         let extent = |id| thick::least_extent(id, geometry, surfaces);
         thick::reduce(media, &self.world.reductions, order, &self.endless, extent)
+    }
+
+    fn led(&self, media: &[Medium]) -> Vec<bool> {
+        let Parts { geometry, surfaces, .. } = &self.parts;
+        thick::led(media, &self.endless, |id| thick::least_extent(id, geometry, surfaces))
     }
 
     fn area_lights(&self) -> Option<AreaLights> {

@@ -30,6 +30,8 @@ pub struct Frame {
     pub lit: Vec<bool>,
     /// Where compact lights are likely to be seen from media that are not among those, by [`MediumId`].
     pub beneath: Vec<Option<Beneath>>,
+    /// Media whose walks are led to their surface ([`crate::optics::dwivedi`]), by [`MediumId`].
+    pub led: Vec<bool>,
     /// All triangles.
     pub geometry: Geometry,
     /// What triangles are, by [`super::surface::SurfaceId`].

@@ -24,9 +24,9 @@ pub const LAYER: &str = "[[surfaces]]\nmesh = \"layer.ply\"\nnormals = \"flat\"\
 pub const TRAY: &str = "[[surfaces]]\nmesh = \"tray.ply\"\nnormals = \"flat\"\n\
                         material = { kind = \"diffuse\", reflectance = 0 }\n";
 /// Straight up from between the layer and the tray, straight down from above; all rays are parallel to 1e-5.
-const BELOW: &str =
+pub const BELOW: &str =
     "[camera]\neye = [0.3, 0.2, -2]\ntarget = [0.3, 0.2, 0]\nup = [0, 1, 0]\nvertical_fov = 0.001\n";
-const ABOVE: &str =
+pub const ABOVE: &str =
     "[camera]\neye = [0.3, 0.2, 2]\ntarget = [0.3, 0.2, 0]\nup = [0, 1, 0]\nvertical_fov = 0.001\n";
 
 /// Makes every flight of every path traced, as it is where media glow: nothing does, so nothing else changes.

@@ -7,7 +7,8 @@ use floe::optics::similarity::Reduction;
 use floe::spectrum::LaneCurve;
 use glam::DVec3;
 
-use super::thick_media::{LAYER, TRAY, assert_same_mean, trace_every_flight, tray};
+use super::led_walks::{EVEN, Layer, PICTURE, folder, lead};
+use super::thick_media::{ABOVE, BELOW, LAYER, TRAY, assert_same_mean, trace_every_flight, tray};
 use super::walls::sky_picture;
 use crate::common::mesh::{TestMesh, sphere};
 use crate::common::render::{Prepared, Rendered};
@@ -167,4 +168,65 @@ fn compare_blocks(exact: &Rendered, other: &Rendered) {
     let [rms, noise, worst] =
         [(square / count).sqrt(), f64::sqrt(noise / count), worst].map(|part: f64| 100.0 * part);
     println!("    blocks of 20 x 20, green: rms {rms:.2} % of which noise {noise:.2} %, worst {worst:.2} %");
+}
+
+/// Prints how many times less time walks that are led take to equal error, and how many times less their variance is.
+#[test]
+#[ignore = "minutes"]
+fn what_leading_walks_is_worth() {
+    let folder = folder();
+    for (sky, view, thickness) in [(PICTURE, ABOVE, 40.0), (EVEN, ABOVE, 40.0), (EVEN, BELOW, 4.0)] {
+        for (n, g) in [(1.0, 0.0), (1.31, 0.0), (1.0, 0.86), (1.31, 0.86)] {
+            let mut line = format!("{sky}, {thickness}, n {n}, g {g}:");
+            for albedo in [0.5, 0.7, 0.9, 0.99, 0.998] {
+                let mut scene = Layer { n, g, thickness, albedos: [albedo; 3] }.scene(&folder, sky, view);
+                let (mut square, mut seconds) = ([0.0; 2], [0.0; 2]);
+                for (seed, is_led) in (0..3).flat_map(|seed| [(seed, false), (seed, true)]) {
+                    lead(&mut scene, is_led);
+                    let (picture, time) = timed(&scene, 256, seed);
+                    square[usize::from(is_led)] += picture.mean().1.y.powi(2);
+                    seconds[usize::from(is_led)] += time;
+                }
+                let less = square[0] / square[1];
+                line += &format!(" | {albedo}: {:.2} ({less:.2})", less * seconds[0] / seconds[1]);
+            }
+            println!("{line}");
+        }
+    }
+}
+
+/// The same of balls of 1 m, under the picture of the sky and lit from behind only.
+#[test]
+#[ignore = "minutes"]
+fn what_leading_walks_is_worth_in_balls() {
+    let behind = sky_picture(|d| DVec3::splat(if d.y > 0.3 { 1.0 } else { 0.0 }));
+    let all = sky_picture(|d| DVec3::new(0.4, 0.6, 1.0) * (1.0 + 0.8 * d.x) + 0.5 * d.z.max(0.0));
+    let ball = sphere(DVec3::ZERO, 0.5, 4);
+    for (name, sky) in [("all around", all), ("behind", behind)] {
+        let folder = SceneFolder::new().mesh("ball.ply", &ball).file("sky.exr", &sky);
+        for (thickness, g) in [10.0, 20.0, 40.0].into_iter().flat_map(|t| [0.0, 0.86].map(|g| (t, g))) {
+            let mut line = format!("ball, {name}, {thickness}, g {g}:");
+            for albedo in [0.7, 0.9, 0.99, 0.998] {
+                let mut scene = folder.scene(&format!(
+                    "[media.milk]\nior = 1.31\nscattering = {}\nabsorption = {}\n\
+                     phase = {{ kind = {} }}\n[[surfaces]]\nmesh = \"ball.ply\"\nfront = \"air\"\nback = \"milk\"\n\
+                     material = {{ kind = \"dielectric\" }}\n[sky]\nradiance = {{ image = \"sky.exr\" }}\n\
+                     [camera]\neye = [0, -10, 0]\ntarget = [0, 0, 0]\nvertical_fov = 5\nresolution = [32, 32]\n",
+                    thickness / (1.0 - g),
+                    thickness * (1.0 - albedo) / albedo,
+                    if g == 0.0 { "\"isotropic\"" } else { "\"henyey-greenstein\", g = 0.86" }
+                ));
+                let (mut square, mut seconds) = ([0.0; 2], [0.0; 2]);
+                for (seed, is_led) in (0..2).flat_map(|seed| [(seed, false), (seed, true)]) {
+                    lead(&mut scene, is_led);
+                    let (picture, time) = timed(&scene, 64, seed);
+                    square[usize::from(is_led)] += picture.mean().1.y.powi(2);
+                    seconds[usize::from(is_led)] += time;
+                }
+                let less = square[0] / square[1];
+                line += &format!(" | {albedo}: {:.2} ({less:.2})", less * seconds[0] / seconds[1]);
+            }
+            println!("{line}");
+        }
+    }
 }

@@ -220,6 +220,11 @@ impl PhaseFunction {
         each!(self, lobe => lobe.mean_cosine())
     }
 
+    /// True where directions are drawn from the value itself, so that [`PhaseFunction::mean_cosine`] is theirs too.
+    pub fn is_sampled_exactly(&self) -> bool {
+        each!(self, lobe => lobe.table().is_none())
+    }
+
     // Kept out of the callers' loops, where the two commonest kinds are.
     #[inline(never)]
     fn any_value(&self, deflection: Deflection) -> f32 {
