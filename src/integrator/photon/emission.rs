@@ -61,7 +61,7 @@ pub(super) struct Emitted {
     pub(super) leaves: u32,
     pub(super) medium: MediumId,
     pub(super) flux: Lanes,
-    /// [`super::Photon::spread`]
+    /// As [`super::Photon::spread`].
     pub(super) spread: f32,
 }
 

@@ -11,7 +11,7 @@
 //! | scattered before, onto the first diffuse surface of an eye path | final gathering, or global photons |
 //! | ... onto the second one | global photons |
 //! | scattered in a medium by a wide angle | photons around the eye's rays, up to the last surface at which photons are asked |
-//! | ... within the peak of its phase function | eye paths that turn there and go on asking; [`peak`] |
+//! | ... within the peak of its phase function | eye paths that turn there and go on asking (`peak.rs`) |
 //! | of any other sky, and of media that emit | eye paths alone, which go on as in path tracing |
 //!
 //! Where the open air itself scatters there are no photons, which would have to begin at infinity: eye paths find all that
@@ -19,6 +19,7 @@
 //!
 //! Photons carry the light of the sky where a medium scatters, since eye paths would have to walk through it, and where
 //! a small part of the sky has most of its light; `sky = true` or `false` decides otherwise.
+#![doc = include_str!("convergence.md")]
 
 pub(super) mod emission;
 pub(super) mod gather;
