@@ -57,7 +57,7 @@ impl Environment {
 
     /// True when a small part of the sphere has most of its light: chance that runs into it is noisy.
     ///
-    /// That is where the mean square over the sphere is more than [`PEAKED`] times the squared mean, which is the relative
+    /// That is where the mean square over the sphere is more than 16 times the squared mean, which is the relative
     /// variance of a random direction, and 1.
     pub fn is_peaked(&self) -> bool {
         matches!(self, Self::Image(image) if contrast_of(&image.picture) > PEAKED)
