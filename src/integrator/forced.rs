@@ -10,6 +10,8 @@
 //! p being the selection probabilities of the lanes. So each branch is a free flight on condition of its outcome, times
 //! the outcome's probability: the weights over the lanes and the expectation are those of free flights.
 
+use glam::Vec3;
+
 use super::flight::{Clearing, Event};
 use super::path::{Branch, Fate, Sample};
 use crate::geometry::Ray;
@@ -27,6 +29,8 @@ impl Sample<'_> {
         let length = self.length::<VARIED>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
         let mut scattered = *branch;
         scattered.stream = branch.stream.fork(2);
+        // It waits for its turn, so no flight may be drawn for it here.
+        scattered.outward = Vec3::ZERO;
         let u = scattered.stream.next4();
         let flight = medium.free_flight_within(branch.throughput, length, u[0]);
         let distance = match VARIED {

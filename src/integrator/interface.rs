@@ -29,6 +29,7 @@ pub(super) struct Ways {
 
 /// Both ways about the shading normal `ns`; about the geometric one when either would end up on the wrong side, or when
 /// `ns` itself is not on the side of `wo`.
+#[inline]
 pub(super) fn ways(wo: Vec3, ns: Vec3, ng: Vec3, eta_t_over_i: f32) -> Ways {
     let about = |normal: Vec3, shaded: bool| Ways {
         reflectance: fresnel::dielectric(wo.dot(normal), eta_t_over_i).reflectance,

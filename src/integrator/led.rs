@@ -39,7 +39,7 @@ impl Sample<'_> {
     #[inline(never)]
     pub(super) fn fly_led(&mut self, branch: &mut Branch, u: f32) -> Event {
         let medium = self.scratch.media[branch.medium.0 as usize];
-        let flight = std::mem::replace(&mut branch.led, LedFlight::NONE);
+        let flight = std::mem::replace(&mut self.scratch.flight, LedFlight::NONE);
         let distance = flight.distance(u);
         let ray = Ray::new(branch.origin, branch.direction);
         let point = ray.at(distance);

@@ -30,7 +30,7 @@ pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
 
 use crate::accel::Hit;
-use crate::optics::dwivedi::Dwivedi;
+use crate::optics::dwivedi::{Dwivedi, LedFlight};
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
 use crate::scene::description::{IntegratorKind, RenderDescription};
@@ -69,6 +69,8 @@ pub struct Scratch {
     pub(crate) sources: Vec<Lanes>,
     /// How every medium leads its walks; empty where none does.
     pub(crate) led: Vec<Option<Dwivedi>>,
+    /// The flight that the particle which the current branch leaves has drawn.
+    pub(crate) flight: LedFlight,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.

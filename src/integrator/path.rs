@@ -83,8 +83,6 @@ pub struct Branch {
     pub(super) clearing: Clearing,
     /// Out of its medium at the interface of it that it has met last; zero before any.
     pub(super) outward: Vec3,
-    /// The flight that the particle which it leaves has drawn.
-    pub(super) led: LedFlight,
     pub(super) stream: SampleStream,
 }
 
@@ -196,6 +194,10 @@ impl PathTracer {
         sample: &mut Sample,
     ) {
         while let Some(mut branch) = sample.scratch.branches.pop() {
+            if SCATTERING {
+                // The branch before may have ended where it had drawn one.
+                sample.scratch.flight = LedFlight::NONE;
+            }
             while sample.advance::<SCATTERING, DIRECT, VARIED>(&mut branch) == Fate::GoesOn {}
         }
     }
@@ -215,7 +217,7 @@ impl Sample<'_> {
         if SCATTERING
             && !VARIED
             && branch.clearing.is_there()
-            && !branch.led.is_there()
+            && !self.scratch.flight.is_there()
             && !(DIRECT && self.frame.looks_for_lights(branch.medium))
         {
             // The ball is left when the walk in it ends, or a flight of its own would end.
@@ -225,7 +227,7 @@ impl Sample<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
-        let event = if SCATTERING && !VARIED && branch.led.is_there() {
+        let event = if SCATTERING && !VARIED && self.scratch.flight.is_there() {
             self.fly_led(branch, u[0])
         } else if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
             self.fly_and_scatter::<DIRECT, VARIED>(branch)
@@ -294,7 +296,7 @@ impl Sample<'_> {
             None => phase.sample(forward, [u[1], u[2]]),
             Some(led) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
-                branch.led = flight;
+                self.scratch.flight = flight;
                 turned
             }
         };
@@ -387,7 +389,6 @@ impl Branch {
             arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
             clearing: Clearing::NONE,
             outward: Vec3::ZERO,
-            led: LedFlight::NONE,
             stream,
         }
     }

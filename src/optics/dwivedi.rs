@@ -214,6 +214,12 @@ impl Led {
     }
 }
 
+impl Default for LedFlight {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl LedFlight {
     /// No flight.
     pub const NONE: Self = Self { led: Vec4::ZERO, free: Vec4::ZERO, stretched: Vec4::ZERO, drawn: 0.0 };

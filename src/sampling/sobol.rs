@@ -63,7 +63,7 @@ const fn direction_numbers() -> [[u32; 4]; 32] {
 }
 
 /// Point `index` of the sequence with scramble `seed`, as 32-bit fractions.
-#[inline]
+#[inline(always)]
 pub fn scrambled4(index: u32, seed: u32) -> [u32; 4] {
     let shuffled = scramble(index.reverse_bits(), seed).reverse_bits();
     let rows: [&[u32; 4]; 4] =

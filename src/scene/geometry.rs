@@ -70,6 +70,7 @@ impl Geometry {
 
     /// The interpolated normal on the side that a hit is seen from, whatever that says of it; `ng`, the triangle's
     /// normal on that side, without shading normals.
+    #[inline]
     pub fn interpolated_normal(&self, hit: &Hit, ng: Vec3) -> Vec3 {
         let corners = self.corners[hit.triangle as usize];
         if corners == Self::FLAT {
@@ -100,6 +101,7 @@ impl Geometry {
 }
 
 /// The right-hand normal; in double precision where single precision underflows.
+#[inline(always)]
 fn unit_normal(v: &[Vec3; 3]) -> Vec3 {
     let n = scaled_normal(v);
     let squared = n.length_squared();
