@@ -43,10 +43,7 @@ impl Integrator {
     /// A line for each photon map.
     fn photon_lines(&self, needs: &Needs) -> [NeedLine; 3] {
         let emits = match self {
-            Self::Photon(mapper) => Some(
-                needs.lamps
-                    || mapper.settings.sky.unwrap_or(needs.peaked_sky || (needs.scattering && needs.sky)),
-            ),
+            Self::Photon(mapper) => Some(needs.lamps || mapper.carries_sky(needs)),
             _ => None,
         };
         let takes = |part, needed: &[(bool, &'static str)], because| {

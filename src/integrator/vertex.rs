@@ -24,18 +24,22 @@ impl Sample<'_> {
         u: [f32; 4],
     ) -> Fate {
         let frame = self.frame;
-        let is_done = self.photons.is_some_and(|pass| !pass.walks) && branch.has_asked_everywhere();
         match frame.surface(hit.triangle) {
             Surface::Interface(pair) if pair.matched => self.pass(branch, hit, pair),
             Surface::Emitter { radiance } => {
                 self.arrive(branch, hit, radiance);
                 Fate::Ends
             }
-            _ if is_done || self.is_spent(branch) => Fate::Ends,
+            _ if self.has_all_light(branch) || self.is_spent(branch) => Fate::Ends,
             Surface::Interface(pair) => self.bend(branch, hit, pair, u),
             Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
         }
+    }
+
+    /// True when photons have given a path all its light, and eye paths do not go on for any other.
+    fn has_all_light(&self, branch: &Branch) -> bool {
+        self.photons.is_some_and(|pass| !pass.walks) && branch.lookups_left == 0
     }
 
     /// An index-matched boundary: the medium changes and L / n^2 stays.
@@ -234,11 +238,6 @@ impl Branch {
         self.medium = medium;
         self.throughput *= index_factor;
         self.index_factor *= index_factor;
-    }
-
-    /// True when no vertex is left at which it asks for photons.
-    fn has_asked_everywhere(&self) -> bool {
-        self.lookups_left == 0
     }
 
     /// Takes a share of the path with numbers of its own.

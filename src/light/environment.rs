@@ -37,6 +37,8 @@ pub struct ImageEnvironment {
     distribution: Option<Distribution2d>,
     /// Mean over the sphere, linear RGB.
     mean: Vec3,
+    /// [`Environment::is_peaked`]
+    peaked: bool,
 }
 
 impl Environment {
@@ -47,7 +49,8 @@ impl Environment {
         let axes = [x, up.cross(x), up];
         let distribution = distribution_of(&picture);
         let mean = mean_of(&picture);
-        Self::Image(Box::new(ImageEnvironment { picture, axes, mode, distribution, mean }))
+        let peaked = contrast_of(&picture) > PEAKED;
+        Self::Image(Box::new(ImageEnvironment { picture, axes, mode, distribution, mean, peaked }))
     }
 
     /// True when it is the same from everywhere and not black.
@@ -60,7 +63,7 @@ impl Environment {
     /// That is where the mean square over the sphere is more than 16 times the squared mean, which is the relative
     /// variance of a random direction, and 1.
     pub fn is_peaked(&self) -> bool {
-        matches!(self, Self::Image(image) if contrast_of(&image.picture) > PEAKED)
+        matches!(self, Self::Image(image) if image.peaked)
     }
 
     /// True when next-event estimation looks for it.

@@ -46,6 +46,7 @@ use super::path::PathTracer;
 use crate::sampling::{SampleSeed, SampleStream};
 use crate::scene::description::{KernelKind, PhotonDescription};
 use crate::scene::frame::Frame;
+use crate::scene::needs::Needs;
 use crate::spectrum::Wavelengths;
 
 /// Progressive photon mapping.
@@ -109,12 +110,10 @@ impl PhotonMapper {
         let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
         // At least one for each kind of light.
         let count = if self.settings.count == 0 { pixels } else { self.settings.count.max(3) };
-        let environment = &frame.lights.environment;
-        let shines = environment.is_sampled() || environment.is_constant_light();
-        let sky = shines && self.settings.sky.unwrap_or(frame.needs.scattering || environment.is_peaked());
+        let sky = self.carries_sky(&frame.needs);
         let takes = (frame.needs.diffuse || frame.needs.scattering) && !frame.needs.turbid_air;
         let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());
-        let path_sky = shines && !sky;
+        let path_sky = frame.needs.sky && !sky;
         let mut prepared = PhotonFrame {
             mapper: *self,
             seed,
@@ -132,6 +131,11 @@ impl PhotonMapper {
         };
         prepared.run_pilots(frame);
         prepared
+    }
+
+    /// True when the light of the sky is that of photons.
+    pub(super) fn carries_sky(&self, needs: &Needs) -> bool {
+        needs.sky && self.settings.sky.unwrap_or(needs.scattering || needs.peaked_sky)
     }
 }
 
@@ -155,11 +159,6 @@ impl PhotonFrame {
             sky: self.sky,
         };
         (pass, arrivals.counters)
-    }
-
-    /// The first radii in metres.
-    pub fn radii(&self) -> Radii {
-        self.radii
     }
 
     /// Photons a pass; 0 where none are needed.
