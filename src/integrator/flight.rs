@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use super::path::{Branch, Sample};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
+use crate::optics::dwivedi::LedFlight;
 use crate::optics::medium::MediumLanes;
 use crate::spectrum::Lanes;
 
@@ -62,6 +63,27 @@ impl Clearing {
     }
 }
 
+/// What the path that is followed knows of the medium around it; forgotten where another branch is taken up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around {
+    pub(super) clearing: Clearing,
+    /// Out of the medium at the interface of it that the path has met last; zero before any.
+    pub(super) outward: Vec3,
+    /// The flight that the last particle has drawn.
+    pub(super) flight: LedFlight,
+}
+
+impl Around {
+    pub(super) const NOTHING: Self =
+        Self { clearing: Clearing::NONE, outward: Vec3::ZERO, flight: LedFlight::NONE };
+}
+
+impl Default for Around {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
 /// What a flight ends at. The path's throughput is already that of getting there.
 pub(super) enum Event {
     /// A surface.
@@ -92,7 +114,7 @@ impl Sample<'_> {
         if SCATTERING
             && !VARIED
             && let Some(flight) = &flight
-            && branch.clearing.holds(endless.at(to_particle))
+            && self.scratch.around.clearing.holds(endless.at(to_particle))
         {
             self.scratch.counters.untraced += 1;
             branch.throughput *= medium.scatter_weight(flight);
@@ -106,7 +128,8 @@ impl Sample<'_> {
         {
             let point = endless.at(to_particle);
             if !VARIED {
-                branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+                let clearing = &mut self.scratch.around.clearing;
+                clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
             }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);
@@ -117,7 +140,9 @@ impl Sample<'_> {
             None => medium.transmittance(length),
         };
         let Some(hit) = found else { return Event::Nothing };
-        branch.clearing = Clearing::NONE;
+        if SCATTERING {
+            self.scratch.around.clearing = Clearing::NONE;
+        }
         Event::Surface(hit)
     }
 

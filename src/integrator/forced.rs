@@ -10,9 +10,7 @@
 //! p being the selection probabilities of the lanes. So each branch is a free flight on condition of its outcome, times
 //! the outcome's probability: the weights over the lanes and the expectation are those of free flights.
 
-use glam::Vec3;
-
-use super::flight::{Clearing, Event};
+use super::flight::{Around, Event};
 use super::path::{Branch, Fate, Sample};
 use crate::geometry::Ray;
 
@@ -29,8 +27,8 @@ impl Sample<'_> {
         let length = self.length::<VARIED>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
         let mut scattered = *branch;
         scattered.stream = branch.stream.fork(2);
-        // It waits for its turn, so no flight may be drawn for it here.
-        scattered.outward = Vec3::ZERO;
+        // It waits for its turn, so no flight may be drawn for it here; the other has a surface before it.
+        self.scratch.around = Around::NOTHING;
         let u = scattered.stream.next4();
         let flight = medium.free_flight_within(branch.throughput, length, u[0]);
         let distance = match VARIED {
@@ -39,7 +37,6 @@ impl Sample<'_> {
         };
         let share = flight.probability_within(&medium, length);
         if share > 0.0 && distance.is_finite() {
-            scattered.clearing = Clearing::NONE;
             scattered.throughput *= medium.scatter_weight(&flight) * share;
             scattered.share *= share;
             // The picture's extra layers show one of the two.
@@ -54,7 +51,6 @@ impl Sample<'_> {
         }
         branch.throughput *= medium.transmittance(length);
         branch.share *= flight.probability_beyond(&medium, length);
-        branch.clearing = Clearing::NONE;
         found.map_or(Event::Nothing, Event::Surface)
     }
 }

@@ -17,7 +17,7 @@ use crate::scene::frame::Frame;
 impl Scratch {
     /// Takes the media that lead their walks at the wavelengths of a new sample.
     pub(super) fn lead(&mut self, frame: &Frame) {
-        if frame.led.contains(&true) {
+        if self.led.is_empty() && frame.led.contains(&true) {
             let lanes = frame.media.iter().zip(&self.media).zip(&frame.led);
             let dwivedi = lanes.map(|((m, lanes), led)| led.then(|| Dwivedi::new(lanes, &m.phase)));
             self.led.extend(dwivedi);
@@ -30,29 +30,30 @@ impl Sample<'_> {
     #[inline]
     pub(super) fn led(&self, branch: &Branch) -> Option<Led> {
         let dwivedi = self.scratch.led.get(branch.medium.0 as usize)?.as_ref()?;
-        let knows_where = branch.outward != Vec3::ZERO;
+        let knows_where = self.scratch.around.outward != Vec3::ZERO;
         let goes_freely = branch.forced_left == 0 && branch.scatterings_left > 1;
-        (knows_where && goes_freely).then(|| dwivedi.at(branch.direction, branch.outward, branch.throughput))
+        (knows_where && goes_freely)
+            .then(|| dwivedi.at(branch.direction, self.scratch.around.outward, branch.throughput))
     }
 
     /// Draws the next event of a path that was led, with the random number `u`.
     #[inline(never)]
     pub(super) fn fly_led(&mut self, branch: &mut Branch, u: f32) -> Event {
         let medium = self.scratch.media[branch.medium.0 as usize];
-        let flight = std::mem::replace(&mut self.scratch.flight, LedFlight::NONE);
+        let flight = std::mem::replace(&mut self.scratch.around.flight, LedFlight::NONE);
         let distance = flight.distance(u);
         let ray = Ray::new(branch.origin, branch.direction);
         let point = ray.at(distance);
-        if branch.clearing.holds(point) {
+        if self.scratch.around.clearing.holds(point) {
             self.scratch.counters.untraced += 1;
         } else {
             let t_max = distance + rounding(branch.origin, distance);
             if let Some(hit) = self.nearest(branch, &Ray { t_max, ..ray }) {
                 branch.throughput *= flight.pass_weight(&medium, hit.t);
-                branch.clearing = Clearing::NONE;
+                self.scratch.around.clearing = Clearing::NONE;
                 return Event::Surface(hit);
             }
-            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            self.scratch.around.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
         }
         branch.throughput *= flight.scatter_weight(&medium, distance);
         Event::Particle(distance)

@@ -30,12 +30,12 @@ pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
 
 use crate::accel::Hit;
-use crate::optics::dwivedi::{Dwivedi, LedFlight};
+use crate::optics::dwivedi::Dwivedi;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
 use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
-use crate::spectrum::{Lanes, Wavelengths};
+use crate::spectrum::{LaneMode, Lanes, Wavelengths};
 
 /// What one sample of a pixel brings back.
 #[derive(Clone, Copy, Debug)]
@@ -59,9 +59,11 @@ pub struct FirstHit {
     pub albedo: Lanes,
 }
 
-/// What a worker keeps between samples: no allocation in the inner loop.
+/// What a worker keeps between the samples of one frame by one integrator: no allocation in the inner loop.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    /// Whether media and sources are there already, which where lanes are RGB are those of every sample.
+    prepared: bool,
     /// Coefficients of every medium at the wavelengths of the current sample.
     pub(crate) media: Vec<MediumLanes>,
     /// What an endless depth of every medium adds to a path ([`crate::optics::medium::Medium::source`]); empty where
@@ -69,8 +71,8 @@ pub struct Scratch {
     pub(crate) sources: Vec<Lanes>,
     /// How every medium leads its walks; empty where none does.
     pub(crate) led: Vec<Option<Dwivedi>>,
-    /// The flight that the particle which the current branch leaves has drawn.
-    pub(crate) flight: LedFlight,
+    /// What the current branch knows of the medium around it.
+    pub(crate) around: flight::Around,
     /// Branches of the current sample that are still to be followed.
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
@@ -82,6 +84,11 @@ pub struct Scratch {
 impl Scratch {
     /// Takes the media at the wavelengths of a new sample, and an ambient radiance that they scatter in.
     pub(crate) fn start(&mut self, frame: &Frame, wavelengths: &Wavelengths, ambient: Lanes) {
+        self.branches.clear();
+        if self.prepared && frame.mode == LaneMode::Rgb {
+            return;
+        }
+        self.prepared = true;
         self.media.clear();
         self.media.extend(frame.media.iter().map(|m| m.lanes(wavelengths)));
         self.sources.clear();
@@ -89,9 +96,6 @@ impl Scratch {
             self.sources.extend(frame.media.iter().map(|m| m.source(wavelengths, ambient)));
         }
         self.led.clear();
-        self.branches.clear();
-        // Another scene may have had some.
-        self.crossings.clear();
     }
 }
 

@@ -9,12 +9,11 @@
 use glam::Vec3;
 
 use super::direct::Receiver;
-use super::flight::{Clearing, Event};
+use super::flight::{Around, Event};
 use super::photon::{self, PhotonPass};
 use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
-use crate::optics::dwivedi::LedFlight;
 use crate::optics::medium::MediumId;
 use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
@@ -80,9 +79,6 @@ pub struct Branch {
     /// Vertices at which it still asks for photons.
     pub(super) lookups_left: u8,
     pub(super) arrival: Arrival,
-    pub(super) clearing: Clearing,
-    /// Out of its medium at the interface of it that it has met last; zero before any.
-    pub(super) outward: Vec3,
     pub(super) stream: SampleStream,
 }
 
@@ -174,7 +170,8 @@ impl PathTracer {
         if !varied {
             sample.scratch.lead(frame);
         }
-        match (varied, frame.needs.scattering, frame.needs.direct_light) {
+        let is_left_out = cfg!(floe_without_scattering);
+        match (varied && !is_left_out, frame.needs.scattering && !is_left_out, frame.needs.direct_light) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
             (false, true, false) => self.follow_all::<true, false, false>(&mut sample),
@@ -195,8 +192,7 @@ impl PathTracer {
     ) {
         while let Some(mut branch) = sample.scratch.branches.pop() {
             if SCATTERING {
-                // The branch before may have ended where it had drawn one.
-                sample.scratch.flight = LedFlight::NONE;
+                sample.scratch.around = Around::NOTHING;
             }
             while sample.advance::<SCATTERING, DIRECT, VARIED>(&mut branch) == Fate::GoesOn {}
         }
@@ -216,8 +212,8 @@ impl Sample<'_> {
         }
         if SCATTERING
             && !VARIED
-            && branch.clearing.is_there()
-            && !self.scratch.flight.is_there()
+            && self.scratch.around.clearing.is_there()
+            && !self.scratch.around.flight.is_there()
             && !(DIRECT && self.frame.looks_for_lights(branch.medium))
         {
             // The ball is left when the walk in it ends, or a flight of its own would end.
@@ -227,7 +223,7 @@ impl Sample<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
-        let event = if SCATTERING && !VARIED && self.scratch.flight.is_there() {
+        let event = if SCATTERING && !VARIED && self.scratch.around.flight.is_there() {
             self.fly_led(branch, u[0])
         } else if SCATTERING && branch.forced_left > 0 && self.turns(branch) {
             self.fly_and_scatter::<DIRECT, VARIED>(branch)
@@ -296,7 +292,7 @@ impl Sample<'_> {
             None => phase.sample(forward, [u[1], u[2]]),
             Some(led) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
-                self.scratch.flight = flight;
+                self.scratch.around.flight = flight;
                 turned
             }
         };
@@ -387,8 +383,6 @@ impl Branch {
             scatterings_left: u32::MAX,
             lookups_left: 0,
             arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
-            clearing: Clearing::NONE,
-            outward: Vec3::ZERO,
             stream,
         }
     }
@@ -403,6 +397,10 @@ impl Branch {
     #[inline]
     pub(super) fn goes_on(&mut self, u: f32) -> Fate {
         self.interactions += 1;
+        let is_early = self.bounces < LATE_ROULETTE && self.interactions < LONG_WALK;
+        if is_early && self.throughput.max_element() >= UNTOUCHED * (self.index_factor * self.share) {
+            return Fate::GoesOn;
+        }
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
         let late = self.late_survival();
         // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.

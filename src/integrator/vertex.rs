@@ -51,6 +51,7 @@ impl Sample<'_> {
         }
         branch.enter(beyond, self.index_factor(incident, beyond));
         branch.go_on(hit, branch.direction);
+        self.scratch.around.outward = hit.ng;
         Fate::GoesOn
     }
 
@@ -67,27 +68,29 @@ impl Sample<'_> {
             _ => Looked::Not,
         };
         branch.arrival.looked = Looked::Not;
-        let factor = self.index_factor(incident, beyond);
-        let mut reflected = *branch;
-        reflected.go_on(hit, ways.reflected);
-        let Some(direction) = ways.refracted else {
-            *branch = reflected;
+        let splits = branch.splits_left > 0;
+        let reflects = !splits && u[1] < ways.reflectance;
+        let refracted = ways.refracted.filter(|_| !reflects);
+        let Some(direction) = refracted else {
+            branch.go_on(hit, ways.reflected);
+            self.scratch.around.outward = -hit.ng;
             return branch.interacted(u[3]);
         };
-        let mut refracted = *branch;
-        refracted.go_on(hit, direction);
-        refracted.enter(beyond, factor);
-        refracted.arrival.looked = beyond_looked;
-        if branch.splits_left > 0 {
+        if splits {
+            let mut reflected = *branch;
+            reflected.go_on(hit, ways.reflected);
             reflected.split_off(ways.reflectance, 0);
-            refracted.split_off(1.0 - ways.reflectance, 1);
             if reflected.interacted(u[3]) == Fate::GoesOn && ways.reflectance > 0.0 {
                 self.scratch.branches.push(reflected);
             }
-            *branch = refracted;
-        } else {
-            *branch = if u[1] < ways.reflectance { reflected } else { refracted };
         }
+        branch.go_on(hit, direction);
+        branch.enter(beyond, self.index_factor(incident, beyond));
+        branch.arrival.looked = beyond_looked;
+        if splits {
+            branch.split_off(1.0 - ways.reflectance, 1);
+        }
+        self.scratch.around.outward = hit.ng;
         branch.interacted(u[3])
     }
 
@@ -224,7 +227,6 @@ impl Branch {
         self.origin = hit.point.position;
         self.direction = direction;
         self.leaves = hit.triangle;
-        self.outward = if direction.dot(hit.ng) > 0.0 { -hit.ng } else { hit.ng };
     }
 
     /// Starts again from an opaque surface along `direction`.

@@ -23,6 +23,7 @@ impl Sample<'_> {
     #[inline(always)]
     fn walk_by(&mut self, walked: &mut Branch, phase: &PhaseFunction) -> Fate {
         let medium = self.scratch.media[walked.medium.0 as usize];
+        let clearing = self.scratch.around.clearing;
         let mut branch = *walked;
         let mut fate = Fate::GoesOn;
         let before = branch.interactions;
@@ -31,13 +32,17 @@ impl Sample<'_> {
             let u = stream.next4();
             let flight = medium.free_flight(branch.throughput, u[0]);
             let point = branch.origin + branch.direction * flight.distance;
-            if !branch.clearing.holds(point) {
+            if !clearing.holds(point) {
                 break;
             }
             let (wi, weight) = phase.turn(branch.direction, [u[1], u[2]]);
             branch.stream = stream;
             branch.origin = point;
-            branch.direction = wi * (1.5 - 0.5 * wi.length_squared());
+            branch.direction = match phase {
+                // It does not come from the one before, so that no errors add up.
+                PhaseFunction::Isotropic(_) => wi,
+                _ => wi * (1.5 - 0.5 * wi.length_squared()),
+            };
             branch.throughput *= medium.scatter_weight(&flight) * weight;
             fate = branch.goes_on(u[3]);
             if fate == Fate::Ends {

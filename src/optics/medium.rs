@@ -13,7 +13,7 @@ use glam::Vec4;
 
 use super::density::Density;
 use super::phase::PhaseFunction;
-use crate::geometry::elementary::{exp4, ln, ln_1p, one_minus_exp4};
+use crate::geometry::elementary::{exp4, ln_1p, minus_ln_of_rest, one_minus_exp4};
 use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
 
 /// Index of a medium in its scene.
@@ -48,7 +48,9 @@ pub struct MediumLanes {
     pub sigma_t: Lanes,
     /// Least extinction of the lanes that carry light, in 1/m.
     least: f32,
-    /// Scattering over that.
+    /// 1 over that.
+    mean_free_path: f32,
+    /// Scattering over it.
     albedo: Lanes,
     /// Extinction above that.
     excess: Lanes,
@@ -83,14 +85,13 @@ impl Medium {
     pub fn lanes(&self, wavelengths: &Wavelengths) -> MediumLanes {
         let sigma_s = self.sigma_s.lanes(wavelengths);
         let sigma_t = self.sigma_a.lanes(wavelengths) + sigma_s;
-        let carries_light = if *wavelengths == Wavelengths::RGB { 3 } else { 4 };
-        let carried = &sigma_t.to_array()[..carries_light];
-        let least = carried.iter().fold(f32::INFINITY, |least, sigma_t| least.min(*sigma_t));
-        let most = carried.iter().fold(0.0, |most: f32, sigma_t| most.max(*sigma_t));
+        let carried = if *wavelengths == Wavelengths::RGB { sigma_t.with_w(sigma_t.x) } else { sigma_t };
+        let (least, most) = (carried.min_element(), carried.max_element());
         MediumLanes {
             sigma_s,
             sigma_t,
             least,
+            mean_free_path: 1.0 / least,
             albedo: sigma_s / least,
             excess: (sigma_t - least).max(Vec4::ZERO),
             scatters: sigma_s != Lanes::ZERO,
@@ -160,12 +161,13 @@ impl MediumLanes {
     #[inline(always)]
     pub fn free_flight(&self, throughput: Lanes, u: f32) -> FreeFlight {
         if self.grey {
-            return FreeFlight { distance: -ln(1.0 - u) / self.least, probabilities: Lanes::ZERO };
+            let distance = minus_ln_of_rest(u) * self.mean_free_path;
+            return FreeFlight { distance, probabilities: Lanes::ZERO };
         }
         let probabilities = throughput / throughput.element_sum();
         let (lane, u) = pick(probabilities, u);
         let sigma_t = self.sigma_t[lane];
-        let distance = if sigma_t > 0.0 { -ln(1.0 - u) / sigma_t } else { f32::INFINITY };
+        let distance = if sigma_t > 0.0 { minus_ln_of_rest(u) / sigma_t } else { f32::INFINITY };
         FreeFlight { distance, probabilities }
     }
 

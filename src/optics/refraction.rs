@@ -14,6 +14,7 @@ use glam::Vec3;
 use super::fresnel::refracted_cosine;
 
 /// The mirror direction of `wo` about `n`.
+#[inline]
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
     (2.0 * wo.dot(n) * n - wo).normalize()
 }
@@ -21,6 +22,7 @@ pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
 /// The direction in which light refracts that arrives from `wo`; `None` when all of it is reflected.
 ///
 /// `eta_t_over_i` is the index on the far side over the index on the side of `wo`.
+#[inline]
 pub fn refract(wo: Vec3, n: Vec3, eta_t_over_i: f32) -> Option<Vec3> {
     if eta_t_over_i == 1.0 {
         return Some(-wo);

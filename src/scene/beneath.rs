@@ -41,7 +41,8 @@ impl Asked<'_> {
     /// Where light comes from in each medium from which none is seen straight.
     pub fn beneath(&self) -> Vec<Option<Beneath>> {
         let mut cells: Vec<Option<BeneathCells>> = vec![None; self.media.len()];
-        if self.lights.area.is_some() || self.lights.environment.is_sampled() {
+        let shine = self.lights.area.is_some() || self.lights.environment.is_sampled();
+        if shine && self.has_receivers() {
             let triangles = self.parts.geometry.triangles.len() as u32;
             let windows = || (0..triangles).filter_map(|triangle| self.window(triangle));
             let step = windows().count().div_ceil(TRIANGLES).max(1);
@@ -51,6 +52,12 @@ impl Asked<'_> {
             }
         }
         cells.iter().map(|c| c.as_ref().and_then(BeneathCells::finish)).collect()
+    }
+
+    /// True when anything there scatters light: in clear water over nothing no vertex looks for lights.
+    fn has_receivers(&self) -> bool {
+        let diffuse = self.parts.surfaces.iter().any(|s| matches!(s, Surface::Diffuse { .. }));
+        diffuse || self.media.iter().zip(self.lit).any(|(medium, lit)| !lit && !medium.sigma_s.is_zero())
     }
 
     fn window(&self, triangle: u32) -> Option<Window> {

@@ -13,7 +13,7 @@ use super::peak::is_peak;
 use crate::accel::Hit;
 use crate::geometry::Frame as Basis;
 use crate::integrator::diffuse::DiffuseLobe;
-use crate::integrator::flight::Event;
+use crate::integrator::flight::{Around, Event};
 use crate::integrator::interface::photon_ways;
 use crate::integrator::path::{Branch, Fate, HARD_LIMIT, LONGEST_WALK, Sample};
 use crate::integrator::{Counters, Scratch};
@@ -141,6 +141,7 @@ impl Walk<'_> {
             spread: start.spread,
             history: History::Straight,
         };
+        self.sample.scratch.around = Around::NOTHING;
         while self.advance(&mut flying) == Fate::GoesOn {}
     }
 
