@@ -9,11 +9,10 @@ use super::exit::Exit;
 use super::streams::{print, say};
 use crate::driver::{Job, RenderError};
 use crate::integrator::Integrator;
-use crate::mesh;
+use crate::mesh::Region;
 use crate::optics::density::Density;
-use crate::scene::FrameError;
-use crate::scene::assembly::{Assembled, FrameMesh};
-use crate::scene::description::DensityDescription;
+use crate::scene::assembly::Assembled;
+use crate::scene::description::{DensityDescription, MeshContents};
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
 use crate::spectrum::LaneMode;
@@ -51,13 +50,7 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
     let integrator = Integrator::new(&job.world.description.render);
     let mut previous = None;
     for task in chosen {
-        let mesh = match &task.file {
-            Some(path) => {
-                Some(FrameMesh { path: path.clone(), mesh: mesh::read(path).map_err(FrameError::from)? })
-            }
-            None => None,
-        };
-        let assembled = job.world.assemble(task.number, mesh, previous.as_ref())?;
+        let assembled = job.world.assemble(task.number, task.read()?, previous.as_ref())?;
         *text += &describe_frame(&task.number.to_string(), &assembled, &integrator);
         previous = Some(assembled.frame);
     }
@@ -90,7 +83,26 @@ fn describe_job(job: &Job) -> String {
         LaneMode::Spectral => "four wavelengths of 380 to 780 nm",
     };
     let _ = writeln!(text, "lanes     {lanes}");
-    text + &describe_media(world)
+    text + &describe_meshes(job) + &describe_media(world)
+}
+
+fn describe_meshes(job: &Job) -> String {
+    let meshes = &job.world.description.meshes;
+    let mut text = String::from(if meshes.is_empty() { "" } else { "meshes\n" });
+    for (which, mesh) in meshes.iter().enumerate() {
+        let contents = match &mesh.contents {
+            MeshContents::Inside(medium) => format!("{medium} inside"),
+            MeshContents::Regions(regions) => {
+                let inside = regions.iter().filter(|(region, _)| **region != Region::OUTSIDE);
+                let names: Vec<String> = inside.map(|(r, name)| format!("{} = {name}", r.0)).collect();
+                format!("labels {}", names.join(", "))
+            }
+        };
+        let moving = job.meshes.iter().find(|moving| moving.mesh == which);
+        let files = moving.map_or_else(|| "still".to_owned(), |m| format!("{} files", m.files.len()));
+        let _ = writeln!(text, "  {}: {contents}, priority {}, {files}", mesh.path, mesh.priority);
+    }
+    text
 }
 
 fn describe_media(world: &World) -> String {

@@ -5,16 +5,13 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
-use std::path::Path;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 
 use super::error::RenderError;
 use super::job::FrameTask;
-use crate::mesh;
-use crate::scene::FrameError;
-use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
+use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::frame::Frame;
 use crate::scene::world::World;
 
@@ -95,17 +92,11 @@ pub(super) fn one_ahead(
 
 fn prepare(world: &World, task: &FrameTask, previous: Option<&Frame>, buffers: Buffers) -> Outcome {
     let mut preparation = Preparation::default();
-    let outcome = timed(&mut preparation.read_seconds, || read(task.file.as_deref())).and_then(|mesh| {
-        let assemble = || world.assemble_into(buffers, task.number, mesh, previous);
+    let outcome = timed(&mut preparation.read_seconds, || task.read()).and_then(|meshes| {
+        let assemble = || world.assemble_into(buffers, task.number, meshes, previous);
         Ok(timed(&mut preparation.build_seconds, assemble)?)
     });
     (outcome, preparation)
-}
-
-fn read(file: Option<&Path>) -> Result<Option<FrameMesh>, RenderError> {
-    let Some(path) = file else { return Ok(None) };
-    let mesh = mesh::read(path).map_err(FrameError::from)?;
-    Ok(Some(FrameMesh { path: path.into(), mesh }))
 }
 
 /// Adds the time that some work takes.

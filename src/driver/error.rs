@@ -6,7 +6,7 @@ use crate::film::FilmError;
 use crate::scene::FrameError;
 use crate::scene::description::SceneError;
 use crate::scene::domain::DomainError;
-use crate::sequence::SequenceError;
+use crate::sequence::{FrameNumber, SequenceError};
 
 /// What went wrong, for a frame or for the whole job.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +34,17 @@ pub enum RenderError {
     NotFound {
         /// What was given.
         path: PathBuf,
+    },
+    /// One of several meshes has no file of a frame that others have.
+    #[error(
+        "{path}: there is no such file of frame {number}, which others of the [[meshes]] have; each needs a file of every \
+         frame: write it, or leave the frame out with --frames"
+    )]
+    MissingMesh {
+        /// The file, or the pattern where that does not tell its name.
+        path: PathBuf,
+        /// The frame.
+        number: FrameNumber,
     },
     /// The scene that was written for a folder of this name is about another folder.
     #[error(
@@ -118,12 +129,19 @@ impl RenderError {
     /// Who is to blame.
     pub fn blame(&self) -> Blame {
         match self {
-            Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
+            Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } | Self::MissingMesh { .. } => {
+                Blame::Missing
+            }
             Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
             Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
-            Self::Frame(FrameError::NoMedium { .. }) => Blame::Configuration,
+            Self::Frame(
+                FrameError::NoMedium { .. }
+                | FrameError::NoMediumInMesh { .. }
+                | FrameError::Labelled { .. }
+                | FrameError::TooManyLayers { .. },
+            ) => Blame::Configuration,
             Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),
             Self::Frame(FrameError::Sequence(error)) => blame_of_sequence(error),
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,

@@ -5,9 +5,11 @@ use std::path::{Component, Path, PathBuf};
 use glam::DVec3;
 
 use super::error::RenderError;
+use super::meshes::MeshSequence;
 use crate::film::write::write_atomically;
 use crate::mesh::{self, RawMesh};
 use crate::scene::FrameError;
+use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
 use crate::scene::world::World;
@@ -21,8 +23,10 @@ const SCENE_FILE: &str = "scene.toml";
 pub struct Job {
     /// What all frames share.
     pub world: World,
-    /// The frames in order; empty for a still.
+    /// The frames in order, of several meshes the first that is there; empty for a still.
     pub files: Vec<FrameFile>,
+    /// The files of those `[[meshes]]` that change.
+    pub meshes: Vec<MeshSequence>,
     /// The scene file that was written because the folder had none.
     pub written_scene: Option<PathBuf>,
     /// Name of the folder or scene, which names the output.
@@ -34,8 +38,25 @@ pub struct Job {
 pub struct FrameTask {
     /// Its number.
     pub number: FrameNumber,
-    /// Its mesh; `None` for a still without `[frames]`.
-    pub file: Option<PathBuf>,
+    /// The meshes that are its own; none for a still without `[frames]`.
+    pub files: Vec<PathBuf>,
+}
+
+impl FrameTask {
+    /// Reads its meshes.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn read(&self) -> Result<Vec<FrameMesh>, RenderError> {
+        let read = |path: &PathBuf| {
+            if self.files.len() > 1 && !path.is_file() {
+                return Err(RenderError::MissingMesh { path: path.clone(), number: self.number });
+            }
+            let mesh = mesh::read(path).map_err(FrameError::from)?;
+            Ok(FrameMesh { path: path.clone(), mesh })
+        };
+        self.files.iter().map(read).collect()
+    }
 }
 
 impl Job {
@@ -48,24 +69,32 @@ impl Job {
     pub fn open(path: &Path) -> Result<Self, RenderError> {
         let (file, written_scene, name) = scene_file(path)?;
         let description = SceneDescription::from_file(&file)?;
+        let meshes = MeshSequence::of(&description)?;
         let files = match &description.frames {
-            Some(frames) => discover(&description.directory, &frames.path)?,
-            None => Vec::new(),
+            Some(frames) if description.meshes.is_empty() => discover(&description.directory, &frames.path)?,
+            _ => MeshSequence::numbered(&meshes),
         };
         let placement = match &description.camera.placement {
             Some(placement) => *placement,
-            None => framed(&description, &files)?,
+            None => framed(&description, &files, &meshes)?,
         };
-        Ok(Self { world: World::new(description, placement)?, files, written_scene, name })
+        Ok(Self { world: World::new(description, placement)?, files, meshes, written_scene, name })
     }
 
     /// Every frame, in order.
     pub fn tasks(&self) -> Vec<FrameTask> {
-        if self.world.frames().is_none() {
+        if self.files.is_empty() {
             let first = FrameNumber::from_integer(1).unwrap_or_default();
-            return vec![FrameTask { number: first, file: None }];
+            return vec![FrameTask { number: first, files: Vec::new() }];
         }
-        self.files.iter().map(|f| FrameTask { number: f.number, file: Some(f.path.clone()) }).collect()
+        let task = |file: &FrameFile| FrameTask {
+            number: file.number,
+            files: match self.meshes.as_slice() {
+                [] => vec![file.path.clone()],
+                meshes => meshes.iter().map(|mesh| mesh.file(file.number)).collect(),
+            },
+        };
+        self.files.iter().map(task).collect()
     }
 
     /// The frames of a selection, in order.
@@ -74,7 +103,10 @@ impl Job {
     /// [`SequenceError::NoneSelected`] when no frame is left.
     pub fn select(&self, selection: &FrameSelection) -> Result<Vec<FrameTask>, SequenceError> {
         let mut tasks = self.tasks();
-        let there = |t: &FrameTask| FrameFile { number: t.number, path: t.file.clone().unwrap_or_default() };
+        let there = |t: &FrameTask| FrameFile {
+            number: t.number,
+            path: t.files.first().cloned().unwrap_or_default(),
+        };
         let chosen = selection.select(&tasks.iter().map(there).collect::<Vec<_>>())?;
         tasks.retain(|t| chosen.iter().any(|f| f.number == t.number));
         Ok(tasks)
@@ -171,26 +203,45 @@ fn normalised(path: &Path) -> PathBuf {
 }
 
 /// A camera on the bounds of the lowest-numbered frame, or of the surfaces of a still.
-fn framed(description: &SceneDescription, files: &[FrameFile]) -> Result<Placement, RenderError> {
+fn framed(
+    description: &SceneDescription,
+    files: &[FrameFile],
+    meshes: &[MeshSequence],
+) -> Result<Placement, RenderError> {
     let bounds = match (files.first(), &description.frames) {
-        (Some(first), Some(frames)) => {
+        (Some(first), Some(frames)) if description.meshes.is_empty() => {
             let (min, max) = bounds_of(&mesh::read(&first.path).map_err(FrameError::from)?);
             (min * frames.scale, max * frames.scale)
         }
-        _ => surfaces_bounds(description)?,
+        (first, _) => placed_bounds(description, first.map(|first| first.number), meshes)?,
     };
     let camera = &description.camera;
     Ok(automatic_placement(bounds, camera.up, camera.fov, camera.resolution))
 }
 
-fn surfaces_bounds(description: &SceneDescription) -> Result<(DVec3, DVec3), RenderError> {
+/// Of the `[[meshes]]` in the first frame, and of the `[[surfaces]]` where there are none.
+fn placed_bounds(
+    description: &SceneDescription,
+    first: Option<FrameNumber>,
+    meshes: &[MeshSequence],
+) -> Result<(DVec3, DVec3), RenderError> {
+    let number = first.unwrap_or(FrameNumber::ONE);
+    let mut placed: Vec<(PathBuf, f64, DVec3)> = Vec::new();
+    for (which, mesh) in description.meshes.iter().enumerate() {
+        let moving = meshes.iter().find(|moving| moving.mesh == which);
+        let path = moving.map_or_else(|| description.directory.join(&mesh.path), |m| m.file(number));
+        placed.push((path, mesh.scale, mesh.translate));
+    }
+    if placed.is_empty() {
+        for surface in &description.surfaces {
+            let path = description.directory.join(frame_path(&surface.mesh, number)?);
+            placed.push((path, surface.scale, surface.translate));
+        }
+    }
     let mut bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for surface in &description.surfaces {
-        let number = FrameNumber::from_integer(1).unwrap_or_default();
-        let path = description.directory.join(frame_path(&surface.mesh, number)?);
+    for (path, scale, translate) in placed {
         let (min, max) = bounds_of(&mesh::read(&path).map_err(FrameError::from)?);
-        let placed = |p: DVec3| p * surface.scale + surface.translate;
-        bounds = (bounds.0.min(placed(min)), bounds.1.max(placed(max)));
+        bounds = (bounds.0.min(min * scale + translate), bounds.1.max(max * scale + translate));
     }
     Ok(bounds)
 }

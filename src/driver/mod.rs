@@ -8,6 +8,7 @@ mod ahead;
 pub mod error;
 pub mod job;
 pub mod ledger;
+pub mod meshes;
 pub mod render;
 mod session;
 pub mod tiles;

@@ -38,6 +38,17 @@ impl Bounds {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// This box, larger by so much on each side.
+    #[must_use]
+    pub fn grown(self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    /// True when both hold a point; boxes that touch do.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// True when nothing was put in.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()

@@ -8,11 +8,13 @@ use glam::Vec3;
 
 use super::direct::Receiver;
 use super::interface;
+use super::layers::Seen;
 use super::path::{Branch, LitVertex, Looked, Sample};
 use crate::accel::Ignored;
 use crate::geometry::Ray;
 use crate::light::{Beneath, balance};
 use crate::optics::medium::MediumId;
+use crate::scene::layers::Insides;
 use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
@@ -57,8 +59,8 @@ impl<'a> Sample<'a> {
     fn light_through_interface(&mut self, receiver: &Receiver, ray: &Ray) -> Lanes {
         let frame = self.frame;
         self.scratch.counters.shadow_rays += 1;
-        let Some(hit) = frame.accel.closest(ray, Ignored::one(receiver.leaves)) else { return Lanes::ZERO };
-        let Surface::Interface(pair) = frame.surface(hit.triangle) else { return Lanes::ZERO };
+        let seen = self.seen(ray, receiver.leaves, receiver.insides);
+        let Some(Seen { hit, pair: Some(pair), beyond: insides }) = seen else { return Lanes::ZERO };
         let (incident, beyond) = pair.crossed(hit.from_front);
         // From the wrong side rounding has met it.
         if pair.matched || incident != receiver.medium {
@@ -70,14 +72,24 @@ impl<'a> Sample<'a> {
         let Some(direction) = ways.refracted else { return Lanes::ZERO };
         let passed = (1.0 - ways.reflectance) * self.index_factor(incident, beyond);
         let left = self.transmittance_of(incident, ray, 0.0, hit.t) * passed;
-        left * self.light_along(&Ray::new(point.point.position, direction), hit.triangle, beyond)
+        left * self.light_along(&Ray::new(point.point.position, direction), hit.triangle, (beyond, insides))
     }
 
-    /// The light at the end of a ray in `medium` that leaves triangle `leaves`, if nothing is in between.
-    fn light_along(&mut self, ray: &Ray, leaves: u32, medium: MediumId) -> Lanes {
+    /// What a ray meets first; what overlaps it hides is looked through.
+    fn seen(&mut self, ray: &Ray, leaves: u32, insides: Insides) -> Option<Seen> {
+        let frame = self.frame;
+        let hit = frame.accel.closest(ray, Ignored::one(leaves))?;
+        match frame.surface(hit.triangle) {
+            Surface::Layer(_) => self.first_seen(ray, leaves, insides),
+            other => Some(Seen { hit, pair: other.pair().copied(), beyond: insides }),
+        }
+    }
+
+    /// The light at the end of a ray that leaves triangle `leaves` and is in a medium and meshes, if nothing is in between.
+    fn light_along(&mut self, ray: &Ray, leaves: u32, (medium, insides): (MediumId, Insides)) -> Lanes {
         let frame = self.frame;
         self.scratch.counters.shadow_rays += 1;
-        let found = frame.accel.closest(ray, Ignored::one(leaves));
+        let found = self.seen(ray, leaves, insides).map(|seen| seen.hit);
         let (radiance, distance) = match found.map(|hit| (frame.surface(hit.triangle), hit)) {
             Some((Surface::Emitter { radiance }, hit)) if hit.from_front => {
                 (radiance.lanes(self.wavelengths), hit.t)

@@ -14,6 +14,7 @@ use crate::light::{LightSample, balance};
 use crate::optics::medium::MediumId;
 use crate::sampling::SampleStream;
 use crate::scene::geometry::SurfaceHit;
+use crate::scene::layers::Insides;
 use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
@@ -23,6 +24,8 @@ pub(super) struct Receiver {
     /// The surface, if it is on one.
     pub(super) normal: Option<SurfaceHit>,
     pub(super) medium: MediumId,
+    /// The meshes that it is in, of those that overlap.
+    pub(super) insides: Insides,
     /// The triangle that shadow rays leave.
     pub(super) leaves: u32,
     /// Interactions of the path before it.
@@ -104,7 +107,13 @@ impl Sample<'_> {
         } else {
             self.frame.accel.occluded(&ray, ignored)
         };
-        if blocked { Lanes::ZERO } else { self.transmittance(receiver.medium, &ray) }
+        match blocked {
+            true => Lanes::ZERO,
+            false if self.frame.needs.layers => {
+                self.transmittance_among_layers(receiver.medium, receiver.insides, &ray)
+            }
+            false => self.transmittance(receiver.medium, &ray),
+        }
     }
 
     /// Lists the index-matched boundaries that a ray crosses; true when something else blocks it.
@@ -114,7 +123,12 @@ impl Sample<'_> {
         crossings.clear();
         let mut blocked = false;
         frame.accel.each_hit(ray, ignored, |hit| {
-            blocked = !matches!(frame.surface(hit.triangle), Surface::Interface(pair) if pair.matched);
+            // Whether a layer is in the way is told when all are known.
+            blocked = !match frame.surface(hit.triangle) {
+                Surface::Interface(pair) => pair.matched,
+                Surface::Layer(_) => true,
+                _ => false,
+            };
             crossings.push(hit);
             blocked
         });
@@ -152,7 +166,7 @@ impl Sample<'_> {
     }
 
     /// True when the ray runs to infinity in a medium without end.
-    fn ends_in_the_dark(&self, ray: &Ray, medium: MediumId) -> bool {
+    pub(super) fn ends_in_the_dark(&self, ray: &Ray, medium: MediumId) -> bool {
         ray.t_max.is_infinite() && self.frame.endless[medium.0 as usize]
     }
 }

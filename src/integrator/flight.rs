@@ -12,6 +12,7 @@ use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::optics::dwivedi::LedFlight;
 use crate::optics::medium::MediumLanes;
+use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
 /// Sheets within a rounding error of each other that a path looks through for the one it has jumped over.
@@ -213,7 +214,11 @@ impl Sample<'_> {
         let mut ignored = Ignored::one(branch.leaves);
         let mut found = self.frame.accel.closest(&from, ignored);
         for _ in 0..MOST_SHEETS {
-            let Some(hit) = found.filter(|hit| !self.frame.is_boundary_of(branch.medium, hit)) else { break };
+            let is_met = |hit: &Hit| self.frame.is_boundary_of(branch.medium, branch.insides, hit);
+            let Some(hit) = found.filter(|hit| !is_met(hit)) else { break };
+            if let Surface::Layer(_) = self.frame.surface(hit.triangle) {
+                return self.nearest_among_layers(branch, ray);
+            }
             self.scratch.counters.rays += 1;
             if let Some(other) = self.beside(branch, &from, &hit) {
                 found = Some(other);
@@ -231,7 +236,7 @@ impl Sample<'_> {
     }
 
     /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for rounding.
-    fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
+    pub(super) fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
         let slack = 4.0 * rounding(ray.origin, t);
         // In double precision: the squares of areas leave the range of single precision among lengths that are valid.
         let v = self.frame.geometry.vertices(hit.triangle).map(|p| p.as_dvec3());
@@ -249,7 +254,7 @@ impl Sample<'_> {
         let t_max = found.t + rounding(ray.origin, found.t);
         let other =
             self.frame.accel.closest(&Ray { t_max, ..*ray }, Ignored([branch.leaves, found.triangle]))?;
-        self.frame.is_boundary_of(branch.medium, &other).then_some(other)
+        self.frame.is_boundary_of(branch.medium, branch.insides, &other).then_some(other)
     }
 }
 

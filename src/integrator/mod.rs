@@ -13,6 +13,7 @@ mod direct;
 mod flight;
 mod forced;
 mod interface;
+mod layers;
 mod led;
 mod left_out;
 pub mod path;

@@ -19,6 +19,7 @@ use crate::optics::phase::Deflection;
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
 use crate::scene::geometry::SurfaceHit;
+use crate::scene::layers::Insides;
 use crate::spectrum::{Lanes, Wavelengths};
 
 /// Volumetric path tracing.
@@ -62,6 +63,8 @@ pub struct Branch {
     /// The triangle that the ray leaves.
     pub(super) leaves: u32,
     pub(super) medium: MediumId,
+    /// The meshes that it is in, of those that overlap. It fills what alignment leaves over.
+    pub(super) insides: Insides,
     pub(super) throughput: Lanes,
     /// The product of (n_a / n_b)^2 that is part of the throughput.
     pub(super) index_factor: f32,
@@ -155,6 +158,7 @@ impl PathTracer {
         scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
         scratch.branches.push(Branch {
             medium: frame.camera_medium,
+            insides: frame.camera_insides,
             throughput: frame.mode.white(),
             splits_left: self.split,
             forced_left: self.forced,
@@ -276,6 +280,7 @@ impl Sample<'_> {
                 position: point,
                 normal: None,
                 medium: branch.medium,
+                insides: branch.insides,
                 leaves: u32::MAX,
                 interactions: branch.interactions,
             };
@@ -372,6 +377,7 @@ impl Branch {
             direction,
             leaves: u32::MAX,
             medium: MediumId(0),
+            insides: Insides::NONE,
             throughput: Lanes::ONE,
             index_factor: 1.0,
             share: 1.0,

@@ -30,11 +30,28 @@ impl Sample<'_> {
                 self.arrive(branch, hit, radiance);
                 Fate::Ends
             }
-            _ if self.has_all_light(branch) || self.is_spent(branch) => Fate::Ends,
-            Surface::Interface(pair) => self.bend(branch, hit, pair, u),
+            Surface::Layer(_) => self.meet_layer(branch, hit, u),
+            Surface::Interface(pair) => self.refract(branch, hit, pair, u),
+            _ if self.is_done(branch) => Fate::Ends,
             Surface::Diffuse { reflectance } => self.reflect_diffusely::<DIRECT>(branch, hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(branch, hit, eta, k, u),
         }
+    }
+
+    /// True when a path has nothing more to find but lights that it runs into.
+    fn is_done(&mut self, branch: &Branch) -> bool {
+        self.has_all_light(branch) || self.is_spent(branch)
+    }
+
+    /// A refracting interface, unless the path is done.
+    pub(super) fn refract(
+        &mut self,
+        branch: &mut Branch,
+        hit: &SurfaceHit,
+        pair: &MediumPair,
+        u: [f32; 4],
+    ) -> Fate {
+        if self.is_done(branch) { Fate::Ends } else { self.bend(branch, hit, pair, u) }
     }
 
     /// True when photons have given a path all its light, and eye paths do not go on for any other.
@@ -43,7 +60,7 @@ impl Sample<'_> {
     }
 
     /// An index-matched boundary: the medium changes and L / n^2 stays.
-    fn pass(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
+    pub(super) fn pass(&mut self, branch: &mut Branch, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
         let (incident, beyond) = pair.crossed(hit.from_front);
         self.check_label(branch, pair, hit);
         if !matches!(branch.arrival.looked, Looked::Straight(_)) {
@@ -118,6 +135,7 @@ impl Sample<'_> {
                 position: hit.point.position,
                 normal: Some(*hit),
                 medium: branch.medium,
+                insides: branch.insides,
                 leaves: hit.triangle,
                 interactions: branch.interactions,
             };

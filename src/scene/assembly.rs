@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use super::beneath::Asked;
 use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
-use super::frame::{Frame, medium_at};
+use super::frame::{Frame, place_of};
 use super::geometry::Geometry;
+use super::layers::Layers;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
 use super::surface::{Surface, SurfaceId};
@@ -70,10 +71,10 @@ impl World {
     pub fn assemble(
         &self,
         number: FrameNumber,
-        mesh: Option<FrameMesh>,
+        meshes: impl IntoIterator<Item = FrameMesh>,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
-        self.assemble_into(Buffers::default(), number, mesh, previous)
+        self.assemble_into(Buffers::default(), number, meshes, previous)
     }
 
     /// As [`World::assemble`], in memory that is there; what was in it changes nothing.
@@ -84,19 +85,24 @@ impl World {
         &self,
         buffers: Buffers,
         number: FrameNumber,
-        mesh: Option<FrameMesh>,
+        meshes: impl IntoIterator<Item = FrameMesh>,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
         let Buffers { geometry, accel } = buffers;
         let mut assembly = Assembly::new(self, geometry);
-        if let Some(FrameMesh { path, mesh }) = mesh {
-            assembly.add_frame(mesh, &path)?;
+        let mut moving = self.meshes(false);
+        for FrameMesh { path, mesh } in meshes {
+            match moving.next() {
+                Some((which, _)) => assembly.parts.add_body(self, which, mesh, &path)?,
+                None => assembly.add_frame(mesh, &path)?,
+            }
         }
         for surface in self.description.surfaces.iter().filter(|s| has_place(&s.mesh)) {
             let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
             assembly.parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
         }
-        Ok(assembly.finish(self.media_at(number)?, accel, previous))
+        let layers = assembly.settle_bodies()?;
+        Ok(assembly.finish(self.media_at(number)?, layers, accel, previous))
     }
 }
 
@@ -153,6 +159,21 @@ impl<'a> Assembly<'a> {
         self.parts.append(&placed, |p| p * scale - origin)
     }
 
+    /// What the `[[meshes]]` are to each other.
+    fn settle_bodies(&mut self) -> Result<Layers, FrameError> {
+        let layers = self.parts.settle_bodies(self.world)?;
+        if !self.parts.bodies.is_empty() {
+            let faces = self.parts.bodies.iter().flat_map(|body| &body.faces);
+            let counts = faces.fold(BTreeMap::new(), |mut counts, face| {
+                *counts.entry(face.interface).or_insert(0) += face.triangles;
+                counts
+            });
+            self.interfaces = counts.into_iter().collect();
+            self.labelled = self.parts.bodies.iter().all(|body| body.labelled);
+        }
+        Ok(layers)
+    }
+
     /// The tags of the triangles; nothing is on a wall without `[domain]`.
     fn apply_domain(&mut self, mesh: &mut RawMesh, path: &Path) -> Result<Vec<WallTag>, FrameError> {
         let (Some(domain), Some(frames)) = (&self.world.description.domain, self.world.frames()) else {
@@ -202,7 +223,13 @@ impl<'a> Assembly<'a> {
         self.parts.push_surface(Surface::Diffuse { reflectance })
     }
 
-    fn finish(self, mut media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
+    fn finish(
+        self,
+        mut media: Vec<Medium>,
+        layers: Layers,
+        accel: Accel,
+        previous: Option<&Frame>,
+    ) -> Assembled {
         let world = self.world;
         let reduced = self.reduce(&mut media);
         let led = self.led(&media);
@@ -214,12 +241,10 @@ impl<'a> Assembly<'a> {
         let still = world.still.geometry.triangles.len();
         let (accel, update) = hierarchy(&self.parts.geometry, still, accel, previous);
         let Parts { geometry, surfaces, .. } = &self.parts;
-        let pair_of = |triangle: u32| match &surfaces[geometry.surfaces[triangle as usize].0 as usize] {
-            Surface::Interface(pair) => Some(*pair),
-            _ => None,
-        };
-        let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
-        let lit = self.lit(|point| medium_at(point, &accel, pair_of, MediumId(0)));
+        let surface = |triangle: u32| &surfaces[geometry.surfaces[triangle as usize].0 as usize];
+        let place_of = |point| place_of(point, &accel, surface, &layers);
+        let camera = place_of(world.camera.eye());
+        let lit = self.lit(|point| place_of(point).medium);
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -230,16 +255,21 @@ impl<'a> Assembly<'a> {
         };
         let beneath = asked.beneath();
         let looked_from: Vec<bool> = lit.iter().zip(&beneath).map(|(lit, b)| *lit || b.is_some()).collect();
+        let needs = self.needs(&media, &lights, &looked_from, camera.medium);
         let needs = Needs {
             similarity: !reduced.is_empty(),
-            ..self.needs(&media, &lights, &looked_from, camera_medium)
+            layers: !layers.is_empty(),
+            // Layers may be hidden, which rays pass straight through.
+            matched_interfaces: needs.matched_interfaces || !layers.is_empty(),
+            ..needs
         };
         Assembled {
             frame: Frame {
                 mode: world.mode,
                 origin: world.origin,
                 camera: world.camera.clone(),
-                camera_medium,
+                camera_medium: camera.medium,
+                camera_insides: camera.insides,
                 media,
                 endless: self.endless,
                 lit,
@@ -247,6 +277,7 @@ impl<'a> Assembly<'a> {
                 led,
                 geometry: self.parts.geometry,
                 surfaces: self.parts.surfaces,
+                layers,
                 accel,
                 lights,
                 white: Spectrum::Constant(1.0).prepare(Role::Illuminant, world.mode),
@@ -315,6 +346,7 @@ impl<'a> Assembly<'a> {
             lamps: lights.sun.is_some() || lights.area.is_some(),
             sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
             peaked_sky: lights.environment.is_peaked(),
+            layers: false,
             similarity: false,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }

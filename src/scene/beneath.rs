@@ -1,7 +1,6 @@
 //! Sends samples of the lights through the interfaces, to learn where light comes from beneath them.
 
 use super::parts::Parts;
-use super::surface::Surface;
 use crate::accel::{Accel, Ignored};
 use crate::geometry::Ray;
 use crate::light::beneath::{Beneath, BeneathCells};
@@ -62,7 +61,7 @@ impl Asked<'_> {
 
     fn window(&self, triangle: u32) -> Option<Window> {
         let surface = self.parts.geometry.surfaces[triangle as usize];
-        let Surface::Interface(pair) = &self.parts.surfaces[surface.0 as usize] else { return None };
+        let pair = self.parts.surfaces[surface.0 as usize].pair()?;
         let front_is_above = self.lit[pair.front.0 as usize];
         if pair.matched || front_is_above == self.lit[pair.back.0 as usize] {
             return None;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::domain::DomainError;
+use super::layers::Insides;
 use crate::light::ImageError;
 use crate::mesh::MeshError;
 use crate::optics::volume::VolumeError;
@@ -38,6 +39,37 @@ pub enum FrameError {
         path: PathBuf,
         /// The label.
         label: i32,
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// A label of one of the `[[meshes]]` has no medium.
+    #[error(
+        "{path}: label {label} has no medium; add `{label} = \"NAME\"` to regions of this mesh in {scene}"
+    )]
+    NoMediumInMesh {
+        /// The mesh.
+        path: PathBuf,
+        /// The label.
+        label: i32,
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// A mesh has labels where it was not said what they are.
+    #[error(
+        "{path}: its triangles carry labels: in {scene}, write regions = {{ 1 = \"NAME\" }} for this mesh in place of `inside`"
+    )]
+    Labelled {
+        /// The mesh.
+        path: PathBuf,
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// More meshes overlap than a ray keeps account of.
+    #[error(
+        "{scene}: the [[meshes]] that overlap have more than {} regions: write some of them as one labelled mesh",
+        Insides::MOST
+    )]
+    TooManyLayers {
         /// The scene file.
         scene: PathBuf,
     },

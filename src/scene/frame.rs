@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::geometry::Geometry;
+use super::layers::{Insides, Layers};
 use super::needs::Needs;
 use super::surface::{MediumPair, Surface};
 use crate::accel::{Accel, Hit, Ignored};
@@ -10,6 +11,7 @@ use crate::light::{Beneath, Lights};
 use crate::optics::medium::{Medium, MediumId};
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths, film_rgb};
 use glam::{DVec3, Vec3};
+use std::collections::BTreeMap;
 
 /// Everything that the light transport of one frame reads.
 #[derive(Clone, Debug)]
@@ -22,6 +24,8 @@ pub struct Frame {
     pub camera: Camera,
     /// Where the camera is.
     pub camera_medium: MediumId,
+    /// Which of the meshes that overlap it is in.
+    pub camera_insides: Insides,
     /// Media by [`MediumId`].
     pub media: Vec<Medium>,
     /// Media in which a ray that meets nothing ends in the dark: the extended sea.
@@ -36,6 +40,8 @@ pub struct Frame {
     pub geometry: Geometry,
     /// What triangles are, by [`super::surface::SurfaceId`].
     pub surfaces: Vec<Surface>,
+    /// The media of meshes that overlap; none where no meshes do.
+    pub layers: Layers,
     /// The hierarchy over them.
     pub accel: Accel,
     /// The lights.
@@ -64,22 +70,26 @@ impl Frame {
         self.lit[id.0 as usize] || self.beneath[id.0 as usize].is_some()
     }
 
-    /// True when a ray in `medium` can meet what it has hit: an opaque surface, or an interface of that medium.
+    /// True when a ray in `medium` can meet what it has hit: an opaque surface, an interface of that medium, or a layer of
+    /// what it is in.
     #[inline]
-    pub fn is_boundary_of(&self, medium: MediumId, hit: &Hit) -> bool {
+    pub fn is_boundary_of(&self, medium: MediumId, insides: Insides, hit: &Hit) -> bool {
         match self.surface(hit.triangle) {
             Surface::Interface(pair) => pair.crossed(hit.from_front).0 == medium,
+            Surface::Layer(layer) => layer.is_met_in(insides, hit.from_front),
             _ => true,
         }
     }
 
-    /// The medium at a point ([`medium_at`]).
-    pub fn medium_at(&self, point: Vec3) -> MediumId {
-        let pair_of = |triangle: u32| match self.surface(triangle) {
-            Surface::Interface(pair) => Some(*pair),
-            _ => None,
-        };
-        medium_at(point, &self.accel, pair_of, MediumId(0))
+    /// Where a point is ([`place_of`]).
+    pub fn place_of(&self, point: Vec3) -> Place {
+        place_of(point, &self.accel, |triangle| self.surface(triangle), &self.layers)
+    }
+
+    /// The boundary between a medium and the one beyond it, seen from the front of its triangle or not.
+    pub fn boundary(&self, before: MediumId, beyond: MediumId, from_front: bool) -> MediumPair {
+        let (front, back) = if from_front { (before, beyond) } else { (beyond, before) };
+        MediumPair { front, back, matched: self.medium(front).n == self.medium(back).n }
     }
 
     /// What a triangle is.
@@ -89,31 +99,52 @@ impl Frame {
     }
 }
 
-/// The medium at a point: that on the near side of the nearest interface seen from there, looking through opaque
-/// surfaces; `outside` where no interface is seen.
-pub fn medium_at(
+/// Where something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The medium there.
+    pub medium: MediumId,
+    /// The meshes that it is in, of those that overlap.
+    pub insides: Insides,
+}
+
+impl Place {
+    /// Outside of everything.
+    pub const OPEN_AIR: Self = Self { medium: MediumId(0), insides: Insides::NONE };
+}
+
+/// Where a point is: on the near side of the nearest interface seen from there, looking through opaque surfaces, and
+/// so for each mesh that overlaps others; outside of those of which nothing is seen.
+pub fn place_of<'s>(
     point: Vec3,
     accel: &Accel,
-    pair_of: impl Fn(u32) -> Option<MediumPair>,
-    outside: MediumId,
-) -> MediumId {
-    let directions = (0..26_u32).map(|i| {
+    surface: impl Fn(u32) -> &'s Surface,
+    layers: &Layers,
+) -> Place {
+    if !layers.is_empty() {
+        return place_among_layers(point, accel, surface, layers);
+    }
+    let seen = directions().filter_map(|direction| nearest_interface(point, direction, accel, &surface));
+    let medium = seen.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(MediumId(0), |(_, medium)| medium);
+    Place { medium, ..Place::OPEN_AIR }
+}
+
+fn directions() -> impl Iterator<Item = Vec3> {
+    (0..26_u32).map(|i| {
         // A spiral over the sphere: no axis is special, so none is likely to graze a face of a box.
         let z = 1.0 - (2.0 * i as f32 + 1.0) / 26.0;
         let (sin, cos) = crate::geometry::elementary::sin_cos(2.399_963_2 * i as f32 + 0.3);
         let r = (1.0 - z * z).sqrt();
         Vec3::new(r * cos, r * sin, z)
-    });
-    let seen = directions.filter_map(|direction| nearest_interface(point, direction, accel, &pair_of));
-    seen.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(outside, |(_, medium)| medium)
+    })
 }
 
 /// Distance and near medium of the first interface along a ray.
-fn nearest_interface(
+fn nearest_interface<'s>(
     point: Vec3,
     direction: Vec3,
     accel: &Accel,
-    pair_of: &impl Fn(u32) -> Option<MediumPair>,
+    surface: &impl Fn(u32) -> &'s Surface,
 ) -> Option<(f32, MediumId)> {
     let mut ray = Ray::new(point, direction);
     let mut ignored = Ignored::NOTHING;
@@ -122,11 +153,43 @@ fn nearest_interface(
     for _ in 0..64 {
         let hit = accel.closest(&ray, ignored)?;
         travelled += hit.t;
-        if let Some(pair) = pair_of(hit.triangle) {
+        if let Surface::Interface(pair) = surface(hit.triangle) {
             return Some((travelled, pair.crossed(hit.from_front).0));
         }
         ray.origin = ray.at(hit.t);
         ignored = Ignored::one(hit.triangle);
     }
     None
+}
+
+/// Every triangle along the rays is asked for: faces that lie on each other must not hide one another.
+fn place_among_layers<'s>(
+    point: Vec3,
+    accel: &Accel,
+    surface: impl Fn(u32) -> &'s Surface,
+    layers: &Layers,
+) -> Place {
+    let mut interface = (f32::INFINITY, MediumId(0));
+    // By all regions of a mesh, how far its nearest face is and which of them is on this side of it.
+    let mut nearest: BTreeMap<Insides, (f32, Insides)> = BTreeMap::new();
+    for direction in directions() {
+        accel.each_hit(&Ray::new(point, direction), Ignored::NOTHING, |hit| {
+            match surface(hit.triangle) {
+                Surface::Interface(pair) if hit.t < interface.0 => {
+                    interface = (hit.t, pair.crossed(hit.from_front).0);
+                }
+                Surface::Layer(layer) => {
+                    let found = nearest.entry(layer.mesh).or_insert((f32::INFINITY, Insides::NONE));
+                    if hit.t < found.0 {
+                        *found = (hit.t, layer.near(hit.from_front));
+                    }
+                }
+                _ => {}
+            }
+            false
+        });
+    }
+    let insides = nearest.values().fold(Insides::NONE, |all, (_, near)| all.and(*near));
+    let is_nearer = nearest.values().all(|(t, _)| interface.0 < *t) && interface.0.is_finite();
+    Place { medium: if is_nearer { interface.1 } else { layers.medium(insides) }, insides }
 }

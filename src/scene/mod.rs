@@ -5,6 +5,7 @@
 
 pub mod assembly;
 mod beneath;
+mod bodies;
 pub mod camera;
 mod density;
 pub mod description;
@@ -12,6 +13,7 @@ pub mod domain;
 pub mod error;
 pub mod frame;
 pub mod geometry;
+pub mod layers;
 pub mod needs;
 mod parts;
 pub mod surface;

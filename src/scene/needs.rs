@@ -11,6 +11,8 @@ pub struct Needs {
     pub direct_light: bool,
     /// Some boundary is passed straight through, so shadow rays cannot stop at the first hit.
     pub matched_interfaces: bool,
+    /// Meshes overlap, so that which media a triangle parts depends on what else is there.
+    pub layers: bool,
     /// Some medium absorbs or scatters.
     pub attenuation: bool,
     /// The density of a medium in the frame changes from place to place.
@@ -94,6 +96,15 @@ impl Needs {
                     "some boundaries are index-matched"
                 } else {
                     "no boundary is index-matched"
+                },
+            ),
+            line(
+                "priorities of meshes",
+                self.layers,
+                if self.layers {
+                    "meshes overlap, or may: the one of higher priority is there"
+                } else {
+                    "no two meshes are in the same place"
                 },
             ),
             line(

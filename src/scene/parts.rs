@@ -6,6 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::bodies::Body;
 use super::description::{MaterialDescription, NormalsDescription, SurfaceDescription};
 use super::error::FrameError;
 use super::geometry::Geometry;
@@ -24,6 +25,8 @@ pub(super) struct Parts {
     pub pairs: BTreeMap<MediumPair, SurfaceId>,
     /// The lights among the surfaces, and how bright each counts.
     pub emitters: Vec<(SurfaceId, f32)>,
+    /// The `[[meshes]]` among the triangles.
+    pub bodies: Vec<Body>,
     pub warnings: Vec<String>,
 }
 
@@ -95,8 +98,8 @@ impl Parts {
         if front == back {
             return None;
         }
-        let index = |id: MediumId| world.media[id.0 as usize].n;
-        let pair = MediumPair { front, back, matched: open || index(front) == index(back) };
+        let pair = world.pair_of(front, back);
+        let pair = MediumPair { matched: open || pair.matched, ..pair };
         if let Some(id) = self.pairs.get(&pair) {
             return Some(*id);
         }
@@ -157,6 +160,7 @@ impl Parts {
             surfaces: other.surfaces.clone(),
             pairs: other.pairs.clone(),
             emitters: other.emitters.clone(),
+            bodies: other.bodies.clone(),
             warnings: other.warnings.clone(),
         }
     }

@@ -1,5 +1,6 @@
 //! What a triangle is to a ray.
 
+use super::layers::Layer;
 use crate::optics::medium::MediumId;
 use crate::spectrum::LaneCurve;
 
@@ -8,6 +9,8 @@ use crate::spectrum::LaneCurve;
 pub enum Surface {
     /// A boundary between two media.
     Interface(MediumPair),
+    /// A boundary of a mesh that overlaps others; which media it parts depends on what the ray is in.
+    Layer(Layer),
     /// Lambertian on both sides.
     Diffuse {
         /// Reflectance in [0, 1].
@@ -25,6 +28,16 @@ pub enum Surface {
         /// Emitted radiance.
         radiance: LaneCurve,
     },
+}
+
+impl Surface {
+    /// The media on its two sides; for a layer, where no other mesh is.
+    pub fn pair(&self) -> Option<&MediumPair> {
+        match self {
+            Self::Interface(pair) | Self::Layer(Layer { pair, .. }) => Some(pair),
+            _ => None,
+        }
+    }
 }
 
 /// The media on the two sides of a boundary.

@@ -93,8 +93,7 @@ fn is_thick(medium: &Medium, is_endless: bool, extent: impl Fn() -> f32) -> bool
 /// The least edge of the box around the interfaces of a medium in metres; 0 without any.
 pub(super) fn least_extent(id: MediumId, geometry: &Geometry, surfaces: &[Surface]) -> f32 {
     let is_of = |pair: &MediumPair| pair.front == id || pair.back == id;
-    let own: Vec<bool> =
-        surfaces.iter().map(|s| matches!(s, Surface::Interface(pair) if is_of(pair))).collect();
+    let own: Vec<bool> = surfaces.iter().map(|s| s.pair().is_some_and(is_of)).collect();
     let corners = (0..geometry.triangles.len() as u32)
         .filter(|&triangle| own[geometry.surfaces[triangle as usize].0 as usize])
         .flat_map(|triangle| geometry.vertices(triangle));

@@ -9,17 +9,18 @@ use super::camera::Camera;
 use super::density;
 use super::description::{
     AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
-    Placement, SceneDescription, SkyDescription,
+    MeshDescription, Placement, SceneDescription, SkyDescription,
 };
 use super::error::FrameError;
 use super::parts::Parts;
+use super::surface::MediumPair;
 use crate::light::{Environment, Picture, Sun};
 use crate::mesh::{self, Region};
 use crate::optics::RefractiveIndex;
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
 use crate::optics::similarity::Reduction;
-use crate::sequence::{FrameNumber, has_place};
+use crate::sequence::{FrameNumber, has_place, is_sequence};
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum};
 
 /// A scene without the meshes that change.
@@ -41,7 +42,7 @@ pub struct World {
     pub environment: Environment,
     /// The sun.
     pub sun: Option<Sun>,
-    /// The `[[surfaces]]` that are the same in every frame, those without a pattern, ready for rays.
+    /// The `[[surfaces]]` and `[[meshes]]` that are the same in every frame, those without a pattern, ready for rays.
     pub(super) still: Parts,
     names: BTreeMap<String, MediumId>,
 }
@@ -93,6 +94,10 @@ impl World {
             let path = self.description.directory.join(&surface.mesh);
             parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
         }
+        for (which, mesh) in self.meshes(true) {
+            let path = self.description.directory.join(&mesh.path);
+            parts.add_body(self, which, mesh::read(&path)?, &path)?;
+        }
         Ok(parts)
     }
 
@@ -101,6 +106,19 @@ impl World {
         self.description.regions.get(&region).and_then(|name| self.medium_of_name(name)).ok_or_else(|| {
             FrameError::NoMedium { path: path.into(), label: region.0, scene: self.description.file.clone() }
         })
+    }
+
+    /// The boundary between two media.
+    pub(super) fn pair_of(&self, front: MediumId, back: MediumId) -> MediumPair {
+        let index = |id: MediumId| self.media[id.0 as usize].n;
+        MediumPair { front, back, matched: index(front) == index(back) }
+    }
+
+    /// The `[[meshes]]` that are the same in every frame, or the others, with their places in the scene file.
+    pub(super) fn meshes(&self, still: bool) -> impl Iterator<Item = (usize, &MeshDescription)> {
+        let directory = &self.description.directory;
+        let meshes = self.description.meshes.iter().enumerate();
+        meshes.filter(move |(_, mesh)| is_sequence(directory, &mesh.path) != still)
     }
 
     /// The medium of a name in `[media]`.

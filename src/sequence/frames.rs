@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::output::split_path;
+use super::output::{has_place, split_path};
 use super::pattern::NamePattern;
 use super::{FrameFile, FrameNumber, SequenceError, glob};
 
@@ -46,6 +46,11 @@ pub fn discover(base: &Path, pattern: &str) -> Result<Vec<FrameFile>, SequenceEr
             Err(SequenceError::NothingFound { folder, wanted: format!("`{pattern}`, a file or a folder") })
         }
     }
+}
+
+/// Whether [`discover`] looks for more than the one file of this name.
+pub fn is_sequence(base: &Path, pattern: &str) -> bool {
+    has_place(pattern) || glob::is_glob(split_path(pattern).1) || join(base, pattern).is_dir()
 }
 
 /// `base` itself when the rest is empty: joining would add a separator.

@@ -46,6 +46,16 @@ impl SceneFolder {
         Job::open(&file).err().unwrap_or_else(|| panic!("this scene was opened: {toml}"))
     }
 
+    /// Why the first frame of the scene of this text cannot be made ready.
+    pub fn not_assembled(&self, toml: &str) -> RenderError {
+        let file = self.path("scene.toml");
+        std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let job = Job::open(&file).unwrap_or_else(|e| panic!("{e}"));
+        let task = job.tasks().swap_remove(0);
+        let assembled = task.read().and_then(|meshes| Ok(job.world.assemble(task.number, meshes, None)?));
+        assembled.err().unwrap_or_else(|| panic!("this scene was assembled: {toml}"))
+    }
+
     fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }

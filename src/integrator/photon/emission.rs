@@ -21,7 +21,8 @@ use crate::geometry::{Bounds, Frame as Basis, Ray};
 use crate::light::LightSample;
 use crate::optics::medium::MediumId;
 use crate::sampling::{SampleStream, warp};
-use crate::scene::frame::Frame;
+use crate::scene::frame::{Frame, Place};
+use crate::scene::layers::Insides;
 use crate::scene::surface::Surface;
 use crate::spectrum::{Lanes, Wavelengths};
 
@@ -48,8 +49,8 @@ pub(super) struct Emission {
     scene: Ball,
     /// Around what the eye sees.
     seen: Ball,
-    /// The medium before each emitting triangle, by its entry among the lights; `None` where an interface crosses it.
-    starts: Vec<Option<MediumId>>,
+    /// What is before each emitting triangle, by its entry among the lights; `None` where an interface crosses it.
+    starts: Vec<Option<Place>>,
 }
 
 /// The start of a photon.
@@ -59,7 +60,7 @@ pub(super) struct Emitted {
     pub(super) direction: Vec3,
     /// The triangle that it leaves.
     pub(super) leaves: u32,
-    pub(super) medium: MediumId,
+    pub(super) place: Place,
     pub(super) flux: Lanes,
     /// As [`super::Photon::spread`].
     pub(super) spread: f32,
@@ -79,7 +80,7 @@ impl Emission {
         ];
         let scene = scene_ball(frame);
         let starts = lights.area.as_ref().map_or_else(Vec::new, |area| {
-            area.bright_sides().map(|(corners, normal)| medium_of_triangle(frame, &corners, normal)).collect()
+            area.bright_sides().map(|(corners, normal)| place_of_triangle(frame, &corners, normal)).collect()
         });
         Self { kinds: kinds.into_iter().flatten().collect(), scene, seen: seen_ball(frame, scene), starts }
     }
@@ -152,7 +153,7 @@ impl Emission {
         let arrives = open_air.lanes(wavelengths).transmittance(open_air.density.length(&back));
         let flux = light.radiance * arrives / (light.pdf_w * pdf_a);
         let emitted =
-            Emitted { origin, direction: -light.wi, leaves: u32::MAX, medium: MediumId(0), flux, spread };
+            Emitted { origin, direction: -light.wi, leaves: u32::MAX, place: Place::OPEN_AIR, flux, spread };
         self.is_in_the_open(frame, &emitted).then_some(emitted)
     }
 
@@ -162,7 +163,7 @@ impl Emission {
             return true;
         }
         let first = frame.accel.closest(&Ray::new(emitted.origin, emitted.direction), Ignored::NOTHING);
-        first.is_some_and(|hit| frame.is_boundary_of(MediumId(0), &hit))
+        first.is_some_and(|hit| frame.is_boundary_of(MediumId(0), Insides::NONE, &hit))
     }
 
     fn start_on_triangle(
@@ -193,8 +194,8 @@ impl Emission {
             origin: point.position,
             direction,
             leaves: point.triangle,
-            medium: self.starts[point.entry]
-                .unwrap_or_else(|| medium_before(frame, point.position, point.normal)),
+            place: self.starts[point.entry]
+                .unwrap_or_else(|| place_before(frame, point.position, point.normal)),
             flux: point.radiance * (cos / (point.pdf_a * pdf_w)),
             spread: 1.0,
         })
@@ -248,22 +249,22 @@ fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     if radius > 0.0 { Ball { centre, radius } } else { scene }
 }
 
-/// The medium on the bright side of an emitting triangle, where it is the same at the centroid and near the corners.
-fn medium_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3) -> Option<MediumId> {
+/// What is on the bright side of an emitting triangle, where it is the same at the centroid and near the corners.
+fn place_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3) -> Option<Place> {
     let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let medium = medium_before(frame, centroid, normal);
-    let is_same = |corner: &Vec3| medium_before(frame, corner.lerp(centroid, 1e-3), normal) == medium;
-    corners.iter().all(is_same).then_some(medium)
+    let place = place_before(frame, centroid, normal);
+    let is_same = |corner: &Vec3| place_before(frame, corner.lerp(centroid, 1e-3), normal) == place;
+    corners.iter().all(is_same).then_some(place)
 }
 
-/// The medium on the bright side of a point on an emitting triangle.
-fn medium_before(frame: &Frame, point: Vec3, normal: Vec3) -> MediumId {
+/// What is on the bright side of a point on an emitting triangle.
+fn place_before(frame: &Frame, point: Vec3, normal: Vec3) -> Place {
     if !frame.needs.specular && !frame.needs.matched_interfaces {
-        return MediumId(0);
+        return Place::OPEN_AIR;
     }
     // A little in front of it, so that an interface that it touches is seen from the bright side.
     let size = point.abs().max_element();
-    frame.medium_at(point + normal * (size * 4.0 * f32::EPSILON))
+    frame.place_of(point + normal * (size * 4.0 * f32::EPSILON))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use crate::geometry::Frame as Basis;
 use crate::integrator::diffuse::DiffuseLobe;
 use crate::integrator::flight::{Around, Event};
 use crate::integrator::interface::photon_ways;
+use crate::integrator::layers::Crossing;
 use crate::integrator::path::{Branch, Fate, HARD_LIMIT, LONGEST_WALK, Sample};
 use crate::integrator::{Counters, Scratch};
 use crate::optics::fresnel;
@@ -132,7 +133,8 @@ impl Walk<'_> {
         let scale = start.flux.max_element();
         let mut flying = Flying {
             branch: Branch {
-                medium: start.medium,
+                medium: start.place.medium,
+                insides: start.place.insides,
                 throughput: start.flux / scale,
                 leaves: start.leaves,
                 ..Branch::new(start.origin, start.direction, stream)
@@ -177,17 +179,51 @@ impl Walk<'_> {
                 Fate::Ends
             }
             Surface::Emitter { .. } => Fate::Ends,
-            Surface::Interface(pair) if pair.matched => {
-                let (incident, beyond) = pair.crossed(hit.from_front);
-                // Where indices differ all the same, L / n^2 holds: its adjoint is the inverse of an eye path's factor.
-                flying.branch.enter(beyond, self.sample.index_factor(beyond, incident));
-                flying.branch.go_on(&hit, flying.branch.direction);
-                Fate::GoesOn
-            }
+            Surface::Layer(_) => self.meet_layer(flying, found, &hit, u),
+            Surface::Interface(pair) if pair.matched => self.pass(flying, &hit, pair),
             Surface::Interface(pair) => self.bend(flying, found, &hit, pair, u),
             Surface::Diffuse { reflectance } => self.arrive(flying, &hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(flying, found, &hit, [eta, k], u),
         }
+    }
+
+    /// An index-matched boundary.
+    fn pass(&mut self, flying: &mut Flying, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
+        let (incident, beyond) = pair.crossed(hit.from_front);
+        // Where indices differ all the same, L / n^2 holds: its adjoint is the inverse of an eye path's factor.
+        flying.branch.enter(beyond, self.sample.index_factor(beyond, incident));
+        flying.branch.go_on(hit, flying.branch.direction);
+        Fate::GoesOn
+    }
+
+    /// A triangle of a mesh that overlaps others.
+    fn meet_layer(&mut self, flying: &mut Flying, found: &Hit, hit: &SurfaceHit, u: [f32; 4]) -> Fate {
+        let branch = &mut flying.branch;
+        let crossing = self.sample.crossing(branch, hit);
+        let is_of = |crossing: &Crossing| {
+            !crossing.contradicts && (crossing.is_hidden() || crossing.media.0 == branch.medium)
+        };
+        let Some(crossing) = crossing.filter(is_of) else {
+            self.sample.scratch.counters.astray_photons += 1;
+            return Fate::Ends;
+        };
+        branch.insides = crossing.beyond;
+        if crossing.is_hidden() {
+            branch.go_on(hit, branch.direction);
+            return Fate::GoesOn;
+        }
+        let frame = self.tracing.frame;
+        let found = crossing.stronger.unwrap_or(*found);
+        let hit = frame.geometry.surface_hit(&found, branch.direction);
+        let pair = crossing.pair(frame, hit.from_front);
+        if pair.matched {
+            return self.pass(flying, &hit, &pair);
+        }
+        let fate = self.bend(flying, &found, &hit, &pair, u);
+        if flying.branch.medium == crossing.media.0 {
+            flying.branch.insides = crossing.before;
+        }
+        fate
     }
 
     /// A refracting interface: one of the ways, by its share.

@@ -1,19 +1,19 @@
 //! Reads `[frames]`.
 
 use super::allowed::Allowed;
+use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
 use super::{Axis, FramesDescription, NormalsDescription};
 use crate::mesh::Region;
 
-/// Reads `[frames]`.
-pub(super) fn read(value: &Value<'_>) -> Result<FramesDescription, SceneError> {
+/// Reads `[frames]`; `has_meshes` says that its files are those of `[[meshes]]`.
+pub(super) fn read(value: &Value<'_>, has_meshes: bool) -> Result<FramesDescription, SceneError> {
     let table = value.table("a table [frames]")?;
-    let path =
-        table.require("path", "write a pattern such as \"frames/frame_####.ply\", a glob or a folder")?;
+    let path = path(&table, has_meshes)?;
     let number = |key, default, allowed| table.get(key).map_or(Ok(default), |v| v.number(allowed));
     let frames = FramesDescription {
-        path: path.text("a pattern such as \"frames/frame_####.ply\", a glob or a folder")?.to_owned(),
+        path,
         fps: number("fps", 24.0, &Allowed::POSITIVE)?,
         scale: number("scale", 1.0, &Allowed::SCALE)?,
         up: table.get("up").map_or(Ok(Axis::Z), |v| axis(&v))?,
@@ -22,6 +22,18 @@ pub(super) fn read(value: &Value<'_>) -> Result<FramesDescription, SceneError> {
     };
     table.finish()?;
     Ok(frames)
+}
+
+/// `path = ..`, which `[[meshes]]` have instead.
+fn path(table: &Table<'_>, has_meshes: bool) -> Result<String, SceneError> {
+    const PATTERN: &str = "a pattern such as \"frames/frame_####.ply\", a glob or a folder";
+    if !has_meshes {
+        return Ok(table.require("path", &format!("write {PATTERN}"))?.text(PATTERN)?.to_owned());
+    }
+    match table.get("path") {
+        Some(path) => Err(path.invalid("the files are those of [[meshes]]: make this one of them")),
+        None => Ok(String::new()),
+    }
 }
 
 /// `normals = "smooth" | "flat" | "file"`

@@ -18,6 +18,7 @@ mod frames;
 mod framing;
 mod material;
 mod media;
+mod meshes;
 mod nearest;
 mod output;
 mod phase;
@@ -54,6 +55,8 @@ pub struct SceneDescription {
     pub directory: PathBuf,
     /// The simulated frames; `None` makes the scene one still frame, number 1.
     pub frames: Option<FramesDescription>,
+    /// The meshes of a frame, where `frames.path` does not name it.
+    pub meshes: Vec<MeshDescription>,
     /// Medium names by label; label 0 is "air" unless the file says otherwise.
     pub regions: BTreeMap<Region, String>,
     /// The simulated box and its walls.
@@ -77,7 +80,7 @@ pub struct SceneDescription {
 /// `[frames]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramesDescription {
-    /// Pattern (`####`, `%04d`, `$F4`), glob, or folder, relative to the scene file.
+    /// Pattern (`####`, `%04d`, `$F4`), glob, or folder, relative to the scene file; empty where `[[meshes]]` have theirs.
     pub path: String,
     /// Frames a second (24).
     pub fps: f64,
@@ -89,6 +92,32 @@ pub struct FramesDescription {
     pub normals: NormalsDescription,
     /// The label inside closed meshes that carry no labels (1).
     pub inside: Region,
+}
+
+/// `[[meshes]]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshDescription {
+    /// As that of `[frames]`, or the one file that is the same in every frame.
+    pub path: String,
+    /// What is within.
+    pub contents: MeshContents,
+    /// The mesh of the greater one is where meshes overlap, the first in the file among equal ones (0).
+    pub priority: i32,
+    /// Where shading normals come from (those of `[frames]`).
+    pub normals: NormalsDescription,
+    /// Metres per unit of the file (that of `[frames]`).
+    pub scale: f64,
+    /// Added after scaling, in metres.
+    pub translate: DVec3,
+}
+
+/// What is within one of the `[[meshes]]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MeshContents {
+    /// One medium: the mesh is closed and carries no labels.
+    Inside(String),
+    /// Medium names by label, those of `[regions]` unless the mesh has its own.
+    Regions(BTreeMap<Region, String>),
 }
 
 /// A signed coordinate axis, as in `up = "z"` or `up = "-y"`.

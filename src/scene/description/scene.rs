@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::document::{Source, Table};
 use super::error::SceneError;
 use super::{SceneDescription, SkyDescription};
-use super::{camera, domain, frames, media, output, regions, render, sky, sun, surfaces};
+use super::{camera, domain, frames, media, meshes, output, regions, render, sky, sun, surfaces};
 
 /// Longest scene file that is read: measured tables of spectra fit in many times, meshes given by mistake do
 /// not.
@@ -56,17 +56,28 @@ impl SceneDescription {
 /// Reads every table. Unknown ones are reported first: a mistyped name explains most errors that would
 /// follow.
 fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneError> {
-    let [frames, regions, domain, media, surfaces, sun, sky, camera, render, output] =
-        ["frames", "regions", "domain", "media", "surfaces", "sun", "sky", "camera", "render", "output"]
-            .map(|name| root.get(name));
+    let [frames, meshes, regions, domain, media, surfaces, sun, sky, camera, render, output] = [
+        "frames", "meshes", "regions", "domain", "media", "surfaces", "sun", "sky", "camera", "render",
+        "output",
+    ]
+    .map(|name| root.get(name));
     root.finish()?;
-    let frames = frames.map(|table| frames::read(&table)).transpose()?;
+    let frames = frames.map(|table| frames::read(&table, meshes.is_some())).transpose()?;
     let media = media.map_or_else(|| Ok(media::air_alone()), |table| media::read(&table))?;
+    let regions =
+        regions.map_or_else(|| Ok(regions::air_outside()), |table| regions::read(&table, &media))?;
+    if let (Some(_), Some(domain)) = (&meshes, &domain) {
+        return Err(domain
+            .invalid("a domain is that of the one mesh of frames.path: leave out [domain] or [[meshes]]"));
+    }
+    let around = meshes::Around { frames: frames.as_ref(), regions: &regions, media: &media };
+    let meshes = meshes.map_or_else(|| Ok(Vec::new()), |tables| meshes::read(&tables, &around))?;
     let up = frames.as_ref().map_or(super::Axis::Z, |frames| frames.up);
     Ok(SceneDescription {
         file: source.file.to_owned(),
         directory: directory(source.file).to_owned(),
-        regions: regions.map_or_else(|| Ok(regions::air_outside()), |table| regions::read(&table, &media))?,
+        meshes,
+        regions,
         domain: domain.map(|table| domain::read(&table)).transpose()?,
         surfaces: surfaces.map_or_else(|| Ok(Vec::new()), |table| surfaces::read(&table, &media))?,
         sun: sun.map(|table| sun::read(&table)).transpose()?,

@@ -23,11 +23,11 @@ fn surface<T>(value: &Value<'_>, media: &BTreeMap<String, T>) -> Result<SurfaceD
     let material =
         table.require("material", "write for example { kind = \"diffuse\", reflectance = 0.5 }")?;
     let sides = material::Sides { front: table.get("front"), back: table.get("back") };
-    let (scale, translate) = table.get("transform").map_or(Ok((1.0, DVec3::ZERO)), |v| transform(&v))?;
+    let (scale, translate) = table.get("transform").map_or(Ok((None, DVec3::ZERO)), |v| transform(&v))?;
     let surface = SurfaceDescription {
         mesh: mesh.text("a mesh file or a pattern such as \"bottom_####.ply\"")?.to_owned(),
         normals: table.get("normals").map_or(Ok(NormalsDescription::default()), |v| frames::normals(&v))?,
-        scale,
+        scale: scale.unwrap_or(1.0),
         translate,
         material: material::read(&table, &material, sides, media)?,
     };
@@ -36,9 +36,9 @@ fn surface<T>(value: &Value<'_>, media: &BTreeMap<String, T>) -> Result<SurfaceD
 }
 
 /// `transform = { scale = .., translate = [..] }`
-fn transform(value: &Value<'_>) -> Result<(f64, DVec3), SceneError> {
+pub(super) fn transform(value: &Value<'_>) -> Result<(Option<f64>, DVec3), SceneError> {
     let table = value.table("a table such as { scale = 1.0, translate = [0, 0, 0] }")?;
-    let scale = table.get("scale").map_or(Ok(1.0), |v| v.number(&Allowed::SCALE))?;
+    let scale = table.get("scale").map(|v| v.number(&Allowed::SCALE)).transpose()?;
     let translate = table.get("translate").map_or(Ok(DVec3::ZERO), |v| v.point())?;
     table.finish()?;
     Ok((scale, translate))
