@@ -81,6 +81,7 @@ fn spectra_in_every_form() {
     assert_eq!(scene.regions[&Region(0)], "air");
     let frames = scene.frames.unwrap();
     assert_eq!((frames.inside, frames.up), (Region(4), Axis { index: 1, negative: true }));
+    assert_eq!(frames.velocity, VelocityDescription::Property("momentum".into()));
     assert_eq!(scene.camera.up, -Vec3::Y);
     let water = &scene.media["water"];
     assert_eq!(water.ior, RefractiveIndex::Water { temperature: 10.0, salinity: 35.0 });
@@ -194,7 +195,7 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.sea]\nscatering = 1", 2, 1, "unknown key `scatering` in [media.sea]; did you mean `scattering`?"),
     ("\n[meda.sea]\nior = 1.3", 2, 2, "unknown key `meda` in the scene file; did you mean `media`?"),
     ("path = 'x'\n[sky]\nradiance = 1", 1, 1, "unknown key `path` in the scene file: the known keys are `frames`"),
-    ("[frames]\npath = 'f'\nvelocity = 'auto'", 3, 1, "unknown key `velocity` in [frames]: the known keys are"),
+    ("[frames]\npath = 'f'\nmomentum = 'auto'", 3, 1, "unknown key `momentum` in [frames]: the known keys are"),
     ("[media.a]\ndensity = { stratified = 1, surfaces = 0 }", 2, 29, "unknown key `surfaces` in [media.a.density]"),
     ("[media.a]\ndensity = { grid = 'a.npy', box = [[0, 0, 0], [1, 1, 1]], surface = 0 }", 2, 59, "unknown key `surface`"),
     ("[media.a]\ndensity = { grid = 'a.npy' }", 2, 11, "[media.a.density] has no `box`: write the least and the"),
@@ -250,6 +251,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[frames]\npath = 'é'\nfps = '24'", 3, 7, "frames.fps: '24': write a number"),
     ("[frames]\npath = 'f'\nup = 'w'", 3, 6, "frames.up: 'w': write one of `x`, `y`, `z`, `-x`, `-y` and `-z`"),
     ("[frames]\npath = 'f'\nnormals = 'smoth'", 3, 11, "frames.normals: 'smoth': did you mean `smooth`?"),
+    ("[frames]\npath = 'f'\nvelocity = false", 3, 12, "frames.velocity: false: write \"auto\", \"none\", \"frames\" or"),
     ("[frames]\npath = 'f'\ninside = 1.0", 3, 10, "frames.inside: 1.0: write a whole number"),
     ("[media.a]\nior = 'water'", 2, 7, "media.a.ior: 'water': write a number, { table = \"water\" }"),
     ("[media.a]\nior = [1, 1, 1]", 2, 7, "media.a.ior: [1, 1, 1]: write a number, {"),

@@ -28,6 +28,7 @@ fps = 24
 scale = 1.0
 up = "z"
 normals = "smooth"
+velocity = "auto"
 inside = 1
 
 [regions]
@@ -90,6 +91,7 @@ const SPECTRAL: &str = r#"
 path = "frames"
 up = "-y"
 normals = "file"
+velocity = "momentum"
 inside = 4
 
 [regions]
@@ -177,7 +179,7 @@ filter = "gaussian"
 "#;
 
 const AUTOMATIC_CAMERA: &str = r#"
-frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y" }
+frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y", velocity = "frames" }
 camera = { resolution = [1920, 1080], vertical_fov = 30 }
 render.integrator = "photon"
 render.photons = { count = 50000, radius = 0.1, volume_radius = 0.2, shrink = 0.8, kernel = "cone", final_gather = false, guide = false, sky = true }

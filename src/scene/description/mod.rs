@@ -87,8 +87,24 @@ pub struct FramesDescription {
     pub up: Axis,
     /// Where shading normals come from (smooth).
     pub normals: NormalsDescription,
+    /// Where velocities come from (auto).
+    pub velocity: VelocityDescription,
     /// The label inside closed meshes that carry no labels (1).
     pub inside: Region,
+}
+
+/// Where the velocities of vertices come from, which motion blur needs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum VelocityDescription {
+    /// From the frame files, under any name that simulators are known to use.
+    #[default]
+    Auto,
+    /// From nowhere: nothing moves within a frame.
+    None,
+    /// From the next frame, where its triangles are the same in the same order.
+    Frames,
+    /// From the frame files, under this name.
+    Property(String),
 }
 
 /// A signed coordinate axis, as in `up = "z"` or `up = "-y"`.
