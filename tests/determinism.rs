@@ -244,8 +244,8 @@ impl Rendered {
         let metadata = ImageMetadata {
             frame_number: 0,
             fps: 24.0,
-            world_to_camera: self.world.camera.world_to_camera(self.world.origin),
-            world_to_ndc: self.world.camera.world_to_ndc(self.world.origin),
+            world_to_camera: self.world.camera.at(0.0).world_to_camera(self.world.origin),
+            world_to_ndc: self.world.camera.at(0.0).world_to_ndc(self.world.origin),
             attributes: Vec::new(),
         };
         let folder = Folder::new();

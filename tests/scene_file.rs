@@ -10,6 +10,10 @@ use floe::spectrum::Spectrum;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
+mod scene_file {
+    mod camera;
+}
+
 fn parse(text: &str) -> Result<SceneDescription, SceneError> {
     SceneDescription::parse(text, Path::new("folder/s.toml"))
 }
@@ -71,7 +75,15 @@ fn a_whole_scene_is_read_as_written() {
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
     assert_eq!(scene.camera.placement, Some(placement));
-    assert_eq!(scene.output.aovs, [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Variance]);
+    assert_eq!(
+        (scene.camera.shutter, scene.camera.aperture, scene.camera.focus_distance),
+        (0.5, 0.02, Some(3.5))
+    );
+    assert_eq!(scene.camera.turntable, Some(TurntableDescription { degrees_per_frame: 3.0, frame: 0.0 }));
+    assert_eq!(
+        scene.output.aovs,
+        [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Motion, Aov::Variance]
+    );
 }
 
 #[test]
@@ -205,7 +217,7 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.ice]\nmodel = 'iceberg'", 2, 1, "unknown key `model` in [media.ice]"),
     ("[render]\nsample = 4", 2, 1, "did you mean `samples`?"),
     ("[render]\ntarget_error = 0.1", 2, 1, "unknown key `target_error` in [render]"),
-    ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\naperture = 1", 4, 1, "unknown key `aperture` in [camera]"),
+    ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\nlens = 1", 4, 1, "unknown key `lens` in [camera]"),
     ("[camera]\ntarget = [0, 0, 0]\neyes = [1, 1, 1]", 3, 1, "unknown key `eyes` in [camera]; did you mean `eye`?"),
     ("[media.sea]\nzz = 1\nior = 1\naa = 2", 2, 1, "unknown key `zz`"),
     ("[media.a]\nphase = { kind = 'isotropic', g = 0.5 }", 2, 31, "unknown key `g` in [media.a.phase]"),
@@ -275,7 +287,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[render]\nfilter = 1979-05-27", 2, 10, "write one of `box`, `gaussian` and `blackman-harris` in quotes"),
     ("[output]\npng = 'yes'", 2, 7, "output.png: 'yes': write true or false"),
     ("[output]\naovs = 'N'", 2, 8, "output.aovs: 'N': write a list such as"),
-    ("[output]\naovs = ['N', 'motion']", 2, 14, "output.aovs[1]: 'motion': write one of `albedo`"),
+    ("[output]\naovs = ['N', 'velocity']", 2, 14, "output.aovs[1]: 'velocity': write one of `albedo`"),
     ("[output]\naovs = ['N', 'Z', 'N']", 2, 19, "output.aovs[2]: 'N': this layer is there twice: keep it once"),
     ("[output]\npath = ''", 2, 8, "output.path: '': write a pattern such as"),
 ];
@@ -410,8 +422,12 @@ const WRONG_RELATIONS: &[Wrong] = &[
 
 #[test]
 fn every_wrong_text_is_named_with_its_place() {
+    assert_wrong(&[WRONG_KEYS, WRONG_TYPES, WRONG_NUMBERS, WRONG_RELATIONS].concat());
+}
+
+fn assert_wrong(texts: &[Wrong]) {
     let mut failures = Vec::new();
-    for (text, line, column, fragment) in [WRONG_KEYS, WRONG_TYPES, WRONG_NUMBERS, WRONG_RELATIONS].concat() {
+    for (text, line, column, fragment) in texts {
         let message = parse(text).map_or_else(|error| error.to_string(), |_| "it was read".to_owned());
         if !message.starts_with(&format!("folder/s.toml:{line}:{column}: ")) || !message.contains(fragment) {
             failures.push(format!("{text}\n  expected {line}:{column}: {fragment}\n  but was {message}\n"));

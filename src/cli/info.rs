@@ -13,6 +13,7 @@ use crate::mesh;
 use crate::optics::density::Density;
 use crate::scene::FrameError;
 use crate::scene::assembly::{Assembled, FrameMesh};
+use crate::scene::camera_path::StartMedia;
 use crate::scene::description::DensityDescription;
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
@@ -52,9 +53,10 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
     let mut previous = None;
     for task in chosen {
         let mesh = match &task.file {
-            Some(path) => {
-                Some(FrameMesh { path: path.clone(), mesh: mesh::read(path).map_err(FrameError::from)? })
-            }
+            Some(path) => Some(FrameMesh {
+                path: path.clone(),
+                mesh: mesh::read_with(path, &job.world.velocity_name()).map_err(FrameError::from)?,
+            }),
             None => None,
         };
         let assembled = job.world.assemble(task.number, mesh, previous.as_ref())?;
@@ -81,7 +83,7 @@ fn describe_job(job: &Job) -> String {
             let _ = writeln!(text, "missing   {}", list.join(", "));
         }
     }
-    let [width, height] = world.camera.resolution();
+    let [width, height] = world.description.camera.resolution;
     let render = &world.description.render;
     let _ =
         writeln!(text, "picture   {width} x {height}, {} samples, {}", render.samples, job.output_pattern());
@@ -150,7 +152,11 @@ fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) 
     for (interface, count) in &assembled.interfaces {
         let _ = writeln!(text, "    between {} and {}: {count}", interface.front.0, interface.back.0);
     }
-    let _ = writeln!(text, "  camera in {}", frame.medium(frame.camera_medium).name);
+    let camera_in = match frame.start_media {
+        StartMedia::One(medium) => &frame.medium(medium).name,
+        StartMedia::Several => "more than one medium",
+    };
+    let _ = writeln!(text, "  camera in {camera_in}");
     let hierarchy = assembled.update.hierarchy.name();
     let _ = writeln!(text, "  hierarchy {hierarchy}, {} bytes", frame.accel.bytes());
     let _ = writeln!(text, "  integrator {}", integrator.name());

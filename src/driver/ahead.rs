@@ -5,14 +5,13 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
-use std::path::Path;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 
 use super::error::RenderError;
 use super::job::FrameTask;
-use crate::mesh;
+use crate::mesh::{self, RawMesh};
 use crate::scene::FrameError;
 use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
 use crate::scene::frame::Frame;
@@ -95,17 +94,33 @@ pub(super) fn one_ahead(
 
 fn prepare(world: &World, task: &FrameTask, previous: Option<&Frame>, buffers: Buffers) -> Outcome {
     let mut preparation = Preparation::default();
-    let outcome = timed(&mut preparation.read_seconds, || read(task.file.as_deref())).and_then(|mesh| {
+    let outcome = timed(&mut preparation.read_seconds, || read(world, task)).and_then(|(mesh, warning)| {
         let assemble = || world.assemble_into(buffers, task.number, mesh, previous);
-        Ok(timed(&mut preparation.build_seconds, assemble)?)
+        let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
+        assembled.warnings.extend(warning);
+        Ok(assembled)
     });
     (outcome, preparation)
 }
 
-fn read(file: Option<&Path>) -> Result<Option<FrameMesh>, RenderError> {
-    let Some(path) = file else { return Ok(None) };
-    let mesh = mesh::read(path).map_err(FrameError::from)?;
-    Ok(Some(FrameMesh { path: path.into(), mesh }))
+/// The mesh of a frame, and what there is to say about its velocities.
+fn read(world: &World, task: &FrameTask) -> Result<(Option<FrameMesh>, Option<String>), RenderError> {
+    let Some(path) = &task.file else { return Ok((None, None)) };
+    let mut mesh = mesh::read_with(path, &world.velocity_name()).map_err(FrameError::from)?;
+    let unknown = if world.follows_vertices() { follow_next(world, task, &mut mesh).err() } else { None };
+    let warning = unknown.map(|why| format!("{}: {why}; {STANDS_STILL}", path.display()));
+    Ok((Some(FrameMesh { path: path.clone(), mesh }), warning))
+}
+
+const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
+
+/// Takes velocities from the next frame, or tells why not: whatever is wrong with that one, its turn is still to come.
+fn follow_next(world: &World, task: &FrameTask, mesh: &mut RawMesh) -> Result<(), String> {
+    let next = task.next.as_ref().ok_or("there is no next frame to take velocities from")?;
+    let after = mesh::read(&next.path).map_err(|e| format!("the next frame cannot be followed: {e}"))?;
+    let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
+    let fps = world.frames().map_or(24.0, |f| f.fps);
+    mesh::follow(mesh, &after, frames / fps).map_err(|e| e.to_string())
 }
 
 /// Adds the time that some work takes.

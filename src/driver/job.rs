@@ -36,6 +36,8 @@ pub struct FrameTask {
     pub number: FrameNumber,
     /// Its mesh; `None` for a still without `[frames]`.
     pub file: Option<PathBuf>,
+    /// The frame after it in the sequence, whether it is rendered or not.
+    pub next: Option<FrameFile>,
 }
 
 impl Job {
@@ -63,9 +65,14 @@ impl Job {
     pub fn tasks(&self) -> Vec<FrameTask> {
         if self.world.frames().is_none() {
             let first = FrameNumber::from_integer(1).unwrap_or_default();
-            return vec![FrameTask { number: first, file: None }];
+            return vec![FrameTask { number: first, file: None, next: None }];
         }
-        self.files.iter().map(|f| FrameTask { number: f.number, file: Some(f.path.clone()) }).collect()
+        let task = |(i, f): (usize, &FrameFile)| FrameTask {
+            number: f.number,
+            file: Some(f.path.clone()),
+            next: self.files.get(i + 1).cloned(),
+        };
+        self.files.iter().enumerate().map(task).collect()
     }
 
     /// The frames of a selection, in order.

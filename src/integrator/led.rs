@@ -41,7 +41,7 @@ impl Sample<'_> {
         let medium = self.scratch.media[branch.medium.0 as usize];
         let flight = std::mem::replace(&mut self.scratch.flight, LedFlight::NONE);
         let distance = flight.distance(u);
-        let ray = Ray::new(branch.origin, branch.direction);
+        let ray = self.ray(branch.origin, branch.direction);
         let point = ray.at(distance);
         if branch.clearing.holds(point) {
             self.scratch.counters.untraced += 1;
@@ -52,7 +52,7 @@ impl Sample<'_> {
                 branch.clearing = Clearing::NONE;
                 return Event::Surface(hit);
             }
-            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            branch.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
         }
         branch.throughput *= flight.scatter_weight(&medium, distance);
         Event::Particle(distance)

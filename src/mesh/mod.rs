@@ -17,6 +17,7 @@ pub(crate) mod disjoint;
 mod dsc;
 mod edges;
 mod error;
+mod follow;
 mod limits;
 mod obj;
 mod ply;
@@ -26,6 +27,7 @@ mod velocity;
 mod weld;
 
 pub use error::{MeshError, Place};
+pub use follow::{NotFollowed, follow};
 pub use prepare::{MeshWarning, prepare};
 pub use read::{FORMATS, Format, Syntax, read, read_bytes, read_with};
 pub use velocity::{VelocityName, VelocityProperty};

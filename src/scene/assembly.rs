@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::beneath::Asked;
+use super::camera_path::Views;
 use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, medium_at};
@@ -17,7 +18,7 @@ use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
 use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
-use crate::mesh::{self, Interface, RawMesh, Region, normals};
+use crate::mesh::{self, Interface, RawMesh, Region, VelocityName, normals};
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::{FrameNumber, frame_path, has_place};
 use crate::spectrum::{Role, Spectrum, Wavelengths};
@@ -94,9 +95,10 @@ impl World {
         }
         for surface in self.description.surfaces.iter().filter(|s| has_place(&s.mesh)) {
             let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
-            assembly.parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
+            let raw = mesh::read_with(&path, &self.velocity_name())?;
+            assembly.parts.add_surface(self, surface, raw, &path)?;
         }
-        Ok(assembly.finish(self.media_at(number)?, accel, previous))
+        Ok(assembly.finish(number, self.media_at(number)?, accel, previous))
     }
 }
 
@@ -126,6 +128,11 @@ impl<'a> Assembly<'a> {
     fn add_frame(&mut self, mesh: RawMesh, path: &Path) -> Result<(), FrameError> {
         let Some(frames) = self.world.frames() else { return Ok(()) };
         self.labelled = mesh.interfaces.is_some();
+        let is_asked = self.world.velocity_name() != VelocityName::Nothing;
+        if is_asked && mesh.velocities.is_none() {
+            self.parts
+                .warn(path, ["the file has no velocities: nothing in it moves while the shutter is open"]);
+        }
         let (mut mesh, warnings) = mesh::prepare(mesh, frames.inside, path)?;
         self.parts.warn(path, warnings);
         self.count_interfaces(&mesh);
@@ -149,7 +156,15 @@ impl<'a> Assembly<'a> {
             &walls.iter().map(|w| w.wall()).collect::<Vec<_>>(),
         );
         let (scale, origin) = (frames.scale, self.world.origin);
-        let placed = Placed { mesh: &mesh, path, normals: frames.normals, group: &group, ids: &ids };
+        let placed = Placed {
+            mesh: &mesh,
+            path,
+            normals: frames.normals,
+            group: &group,
+            ids: &ids,
+            scale,
+            pace: self.world.pace(),
+        };
         self.parts.append(&placed, |p| p * scale - origin)
     }
 
@@ -202,8 +217,16 @@ impl<'a> Assembly<'a> {
         self.parts.push_surface(Surface::Diffuse { reflectance })
     }
 
-    fn finish(self, mut media: Vec<Medium>, accel: Accel, previous: Option<&Frame>) -> Assembled {
+    fn finish(
+        mut self,
+        number: FrameNumber,
+        mut media: Vec<Medium>,
+        accel: Accel,
+        previous: Option<&Frame>,
+    ) -> Assembled {
         let world = self.world;
+        let shutter = world.description.camera.shutter;
+        self.parts.geometry.settle_motions();
         let reduced = self.reduce(&mut media);
         let led = self.led(&media);
         let lights = Lights {
@@ -212,14 +235,20 @@ impl<'a> Assembly<'a> {
             area: self.area_lights(),
         };
         let still = world.still.geometry.triangles.len();
-        let (accel, update) = hierarchy(&self.parts.geometry, still, accel, previous);
+        let (mut accel, update) = hierarchy(&self.parts.geometry, still, accel, previous);
+        if shutter > 0.0 && !self.parts.geometry.motions.is_empty() {
+            accel.set_in_motion(&self.parts.geometry.motions, &self.parts.geometry.triangles, shutter);
+        }
         let Parts { geometry, surfaces, .. } = &self.parts;
         let pair_of = |triangle: u32| match &surfaces[geometry.surfaces[triangle as usize].0 as usize] {
             Surface::Interface(pair) => Some(*pair),
             _ => None,
         };
-        let camera_medium = medium_at(world.camera.eye(), &accel, pair_of, MediumId(0));
-        let lit = self.lit(|point| medium_at(point, &accel, pair_of, MediumId(0)));
+        let views = Views::new(&world.camera, number, shutter, world.tells_motion());
+        let medium_at = |point, time| medium_at(point, time, &accel, pair_of, MediumId(0));
+        let camera_medium = medium_at(views.opening.eye(), 0.0);
+        let start_media = views.start_media(camera_medium, accel.is_in_motion(), medium_at);
+        let lit = self.lit(|point| medium_at(point, 0.0));
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -232,14 +261,16 @@ impl<'a> Assembly<'a> {
         let looked_from: Vec<bool> = lit.iter().zip(&beneath).map(|(lit, b)| *lit || b.is_some()).collect();
         let needs = Needs {
             similarity: !reduced.is_empty(),
+            motion: accel.is_in_motion(),
+            lens: world.description.camera.aperture > 0.0,
             ..self.needs(&media, &lights, &looked_from, camera_medium)
         };
         Assembled {
             frame: Frame {
                 mode: world.mode,
                 origin: world.origin,
-                camera: world.camera.clone(),
-                camera_medium,
+                views,
+                start_media,
                 media,
                 endless: self.endless,
                 lit,
@@ -316,6 +347,8 @@ impl<'a> Assembly<'a> {
             sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
             peaked_sky: lights.environment.is_peaked(),
             similarity: false,
+            motion: false,
+            lens: false,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }

@@ -1,6 +1,6 @@
 //! One frame as rays see it.
 
-use super::camera::Camera;
+use super::camera_path::{StartMedia, Views};
 use super::geometry::Geometry;
 use super::needs::Needs;
 use super::surface::{MediumPair, Surface};
@@ -18,10 +18,10 @@ pub struct Frame {
     pub mode: LaneMode,
     /// The point that coordinates are relative to, in metres.
     pub origin: DVec3,
-    /// The camera.
-    pub camera: Camera,
+    /// What the camera sees while the shutter is open.
+    pub views: Views,
     /// Where the camera is.
-    pub camera_medium: MediumId,
+    pub start_media: StartMedia,
     /// Media by [`MediumId`].
     pub media: Vec<Medium>,
     /// Media in which a ray that meets nothing ends in the dark: the extended sea.
@@ -73,13 +73,21 @@ impl Frame {
         }
     }
 
+    /// The medium that an eye ray begins in.
+    pub fn start_medium(&self, eye: &Ray) -> MediumId {
+        match self.start_media {
+            StartMedia::One(medium) => medium,
+            StartMedia::Several => self.medium_at(eye.origin, eye.time),
+        }
+    }
+
     /// The medium at a point ([`medium_at`]).
-    pub fn medium_at(&self, point: Vec3) -> MediumId {
+    pub fn medium_at(&self, point: Vec3, time: f32) -> MediumId {
         let pair_of = |triangle: u32| match self.surface(triangle) {
             Surface::Interface(pair) => Some(*pair),
             _ => None,
         };
-        medium_at(point, &self.accel, pair_of, MediumId(0))
+        medium_at(point, time, &self.accel, pair_of, MediumId(0))
     }
 
     /// What a triangle is.
@@ -90,9 +98,10 @@ impl Frame {
 }
 
 /// The medium at a point: that on the near side of the nearest interface seen from there, looking through opaque
-/// surfaces; `outside` where no interface is seen.
+/// surfaces; `outside` where no interface is seen. `time` is in frames.
 pub fn medium_at(
     point: Vec3,
+    time: f32,
     accel: &Accel,
     pair_of: impl Fn(u32) -> Option<MediumPair>,
     outside: MediumId,
@@ -104,18 +113,17 @@ pub fn medium_at(
         let r = (1.0 - z * z).sqrt();
         Vec3::new(r * cos, r * sin, z)
     });
-    let seen = directions.filter_map(|direction| nearest_interface(point, direction, accel, &pair_of));
+    let seen = directions
+        .filter_map(|direction| nearest_interface(Ray::new(point, direction).at_time(time), accel, &pair_of));
     seen.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(outside, |(_, medium)| medium)
 }
 
 /// Distance and near medium of the first interface along a ray.
 fn nearest_interface(
-    point: Vec3,
-    direction: Vec3,
+    mut ray: Ray,
     accel: &Accel,
     pair_of: &impl Fn(u32) -> Option<MediumPair>,
 ) -> Option<(f32, MediumId)> {
-    let mut ray = Ray::new(point, direction);
     let mut ignored = Ignored::NOTHING;
     let mut travelled = 0.0;
     // More opaque sheets than this in a row do not occur outside of contrived scenes.

@@ -6,12 +6,14 @@
 pub mod assembly;
 mod beneath;
 pub mod camera;
+pub mod camera_path;
 mod density;
 pub mod description;
 pub mod domain;
 pub mod error;
 pub mod frame;
 pub mod geometry;
+mod motion;
 pub mod needs;
 mod parts;
 pub mod surface;

@@ -28,7 +28,7 @@ pub fn prepare(file: &Path) -> Prepared {
     let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     let task = job.tasks().swap_remove(0);
     let mesh = task.file.map(|path| {
-        let mesh = floe::mesh::read(&path).unwrap_or_else(|e| panic!("{e}"));
+        let mesh = floe::mesh::read_with(&path, &job.world.velocity_name()).unwrap_or_else(|e| panic!("{e}"));
         FrameMesh { path, mesh }
     });
     let assembled = job.world.assemble(task.number, mesh, None).unwrap_or_else(|e| panic!("{e}"));

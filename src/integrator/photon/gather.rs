@@ -67,7 +67,8 @@ impl Sample<'_> {
         let described = self.frame.medium(branch.medium);
         let geometry = &self.frame.geometry;
         let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
-        let slopes = [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction)));
+        let slopes =
+            [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction, ray.time)));
         let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length).min(STEEPEST));
         let before = slopes[0].unwrap_or(Vec3::ZERO);
         let mut sum = Lanes::ZERO;
