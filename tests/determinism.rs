@@ -12,7 +12,7 @@ use floe::driver::job::Job;
 use floe::driver::tiles::{Sampling, render_pixels};
 use floe::film::{FrameImage, ImageMetadata, write_frame};
 use floe::mesh::canonical::canonical;
-use floe::mesh::{Format, Interface, RawMesh, Region, Syntax, read, read_bytes};
+use floe::mesh::{Format, Interface, RawMesh, Region, Syntax, VelocityName, read, read_bytes};
 use floe::scene::assembly::FrameMesh;
 use floe::scene::description::Aov;
 use floe::scene::world::World;
@@ -153,14 +153,25 @@ fn labelled_box() -> String {
 #[test]
 fn tetrahedra_and_their_surface_file_are_the_same_picture() {
     let name = Path::new("box.dsc");
-    let dsc =
-        read_bytes(labelled_box().as_bytes(), Format { syntax: Syntax::Dsc, gzip: false }, name).unwrap();
+    let dsc = read_bytes(
+        labelled_box().as_bytes(),
+        Format { syntax: Syntax::Dsc, gzip: false },
+        &VelocityName::Nothing,
+        name,
+    )
+    .unwrap();
     let expected = [(0, 1), (0, 2), (1, 2)].map(|(f, b)| Interface { front: Region(f), back: Region(b) });
     let found: std::collections::BTreeSet<Interface> = dsc.interfaces.iter().flatten().copied().collect();
     assert_eq!(found.into_iter().collect::<Vec<_>>(), expected);
     // The file lists the same surface in another order, as another program would.
     let text = ply(&reordered(&dsc));
-    let twin = read_bytes(text.as_bytes(), Format { syntax: Syntax::Ply, gzip: false }, name).unwrap();
+    let twin = read_bytes(
+        text.as_bytes(),
+        Format { syntax: Syntax::Ply, gzip: false },
+        &VelocityName::Nothing,
+        name,
+    )
+    .unwrap();
     assert_ne!(twin, dsc);
     assert_eq!(canonical(&twin), canonical(&dsc));
     let scene = small::scene("");
@@ -233,8 +244,8 @@ impl Rendered {
         let metadata = ImageMetadata {
             frame_number: 0,
             fps: 24.0,
-            world_to_camera: self.world.camera.world_to_camera(self.world.origin),
-            world_to_ndc: self.world.camera.world_to_ndc(self.world.origin),
+            world_to_camera: self.world.camera.at(0.0).world_to_camera(self.world.origin),
+            world_to_ndc: self.world.camera.at(0.0).world_to_ndc(self.world.origin),
             attributes: Vec::new(),
         };
         let folder = Folder::new();

@@ -11,9 +11,9 @@ use exr::prelude::{
 use floe::film::exr::encode_exr;
 use floe::film::{FAR_DEPTH, FilmError, FrameImage, ImageMetadata, Pixel, write_frame};
 use floe::scene::description::Aov;
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
-const ALL: [Aov; 5] = [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Variance];
+const ALL: [Aov; 6] = [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Variance, Aov::Motion];
 
 /// Different numbers in every pixel and channel, negative ones among them.
 fn frame(width: u32, height: u32) -> FrameImage {
@@ -27,6 +27,7 @@ fn frame(width: u32, height: u32) -> FrameImage {
             normal: Vec3::new(0.6 * t, -0.8, t),
             position: Vec3::new(10.0 * t, -3.0, 1.0 / (t + 0.1)),
             depth: if i % 5 == 0 { FAR_DEPTH } else { 3.0 + t },
+            motion: Vec2::new(-8.0 * t, 0.5),
             variance: Vec3::new(1e-4 * t, 1e-6, 1e-8),
             luminance_variance: 1e-6,
             samples: 64 + (i % 3) as u32,
@@ -65,7 +66,7 @@ fn every_number_of_every_channel_comes_back() {
     let back = written(folder.path(), &image, &ALL);
     let channels = &back.layer_data.channel_data.list;
     type Value = fn(&Pixel) -> f32;
-    let expected: [(&str, Value); 18] = [
+    let expected: [(&str, Value); 20] = [
         ("A", |p| p.alpha),
         ("B", |p| p.rgb.z),
         ("G", |p| p.rgb.y),
@@ -80,6 +81,8 @@ fn every_number_of_every_channel_comes_back() {
         ("albedo.B", |p| p.albedo.z),
         ("albedo.G", |p| p.albedo.y),
         ("albedo.R", |p| p.albedo.x),
+        ("motion.X", |p| p.motion.x),
+        ("motion.Y", |p| p.motion.y),
         ("samples", |p| p.samples as f32),
         ("variance.B", |p| p.variance.z),
         ("variance.G", |p| p.variance.y),

@@ -99,8 +99,9 @@ fn radiance_at(scene: &Prepared, x: f32, y: f32) -> Vec3 {
     let mut scratch = Scratch::default();
     let wavelengths = Wavelengths::for_mode(scene.frame.mode, 0.5);
     let stream = SampleStream::new(scene.sampling.seed, 0, 0, 0);
+    let eye = scene.frame.views.opening.ray(x, y);
     let sample =
-        scene.sampling.integrator.sample(&scene.frame, &mut scratch, [x, y], &wavelengths, stream, None);
+        scene.sampling.integrator.sample(&scene.frame, &mut scratch, &eye, &wavelengths, stream, None);
     sample.radiance.truncate()
 }
 
@@ -128,7 +129,7 @@ fn s03_the_matched_box_dims_by_its_chord() {
     let (mut worst, mut rays) = (0.0_f64, 0);
     for i in 0..96 * 72 {
         let (x, y) = ((i % 96) as f32 + 0.37, (i / 96) as f32 + 0.61);
-        let ray = scene.frame.camera.ray(x, y);
+        let ray = scene.frame.views.opening.ray(x, y);
         let (None, Some(chord)) =
             (chord(&ray, refracting, scene.frame.origin), chord(&ray, matched, scene.frame.origin))
         else {
@@ -156,8 +157,9 @@ enum Fate {
 /// cone is in it; a cone's edge bulges into a pixel by less than 1e-3 between corners.
 fn fate(scene: &Prepared, x: u32, y: u32) -> Fate {
     let critical = (1.0 - 1.0 / (1.33_f64 * 1.33)).sqrt();
-    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
-        .map(|(i, j)| scene.frame.camera.ray((x + i) as f32, (y + j) as f32).direction.as_dvec3().abs());
+    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
+        scene.frame.views.opening.ray((x + i) as f32, (y + j) as f32).direction.as_dvec3().abs()
+    });
     if (0..3).any(|axis| corners.iter().all(|d| d[axis] > critical + 1e-6)) {
         Fate::Arrives
     } else if corners.iter().all(|d| d.max_element() < critical - 1e-3) {

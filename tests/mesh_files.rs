@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 
 use floe::mesh::canonical::canonical;
 use floe::mesh::topology::topology;
-use floe::mesh::{FORMATS, Format, MeshError, MeshWarning, RawMesh, Region, prepare, read, read_bytes};
+use floe::mesh::{
+    FORMATS, Format, MeshError, MeshWarning, RawMesh, Region, VelocityName, prepare, read, read_bytes,
+};
 use proptest::prelude::*;
 
 /// The files of a folder and of the folders in it, in the order of their names.
@@ -135,7 +137,7 @@ fn corpus() -> Vec<(PathBuf, Format, Vec<u8>)> {
 
 /// Whatever is read must keep what the type promises, and be taken by `prepare`.
 fn check(bytes: &[u8], format: Format, path: &Path) {
-    if let Ok(mesh) = read_bytes(bytes, format, path) {
+    if let Ok(mesh) = read_bytes(bytes, format, &VelocityName::Known, path) {
         assert!(mesh.positions.iter().all(|position| position.is_finite()));
         assert!(mesh.triangles.iter().flatten().all(|&index| (index as usize) < mesh.positions.len()));
         let (mesh, _) = prepare(mesh, Region(1), path).unwrap();

@@ -10,6 +10,10 @@ use floe::spectrum::Spectrum;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
+mod scene_file {
+    mod camera;
+}
+
 fn parse(text: &str) -> Result<SceneDescription, SceneError> {
     SceneDescription::parse(text, Path::new("folder/s.toml"))
 }
@@ -71,7 +75,15 @@ fn a_whole_scene_is_read_as_written() {
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
     assert_eq!(scene.camera.placement, Some(placement));
-    assert_eq!(scene.output.aovs, [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Variance]);
+    assert_eq!(
+        (scene.camera.shutter, scene.camera.aperture, scene.camera.focus_distance),
+        (0.5, 0.02, Some(3.5))
+    );
+    assert_eq!(scene.camera.turntable, Some(TurntableDescription { degrees_per_frame: 3.0, frame: 0.0 }));
+    assert_eq!(
+        scene.output.aovs,
+        [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Motion, Aov::Variance]
+    );
 }
 
 #[test]
@@ -81,6 +93,7 @@ fn spectra_in_every_form() {
     assert_eq!(scene.regions[&Region(0)], "air");
     let frames = scene.frames.unwrap();
     assert_eq!((frames.inside, frames.up), (Region(4), Axis { index: 1, negative: true }));
+    assert_eq!(frames.velocity, VelocityDescription::Property("momentum".into()));
     assert_eq!(scene.camera.up, -Vec3::Y);
     let water = &scene.media["water"];
     assert_eq!(water.ior, RefractiveIndex::Water { temperature: 10.0, salinity: 35.0 });
@@ -194,7 +207,7 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.sea]\nscatering = 1", 2, 1, "unknown key `scatering` in [media.sea]; did you mean `scattering`?"),
     ("\n[meda.sea]\nior = 1.3", 2, 2, "unknown key `meda` in the scene file; did you mean `media`?"),
     ("path = 'x'\n[sky]\nradiance = 1", 1, 1, "unknown key `path` in the scene file: the known keys are `frames`"),
-    ("[frames]\npath = 'f'\nvelocity = 'auto'", 3, 1, "unknown key `velocity` in [frames]: the known keys are"),
+    ("[frames]\npath = 'f'\nmomentum = 'auto'", 3, 1, "unknown key `momentum` in [frames]: the known keys are"),
     ("[media.a]\ndensity = { stratified = 1, surfaces = 0 }", 2, 29, "unknown key `surfaces` in [media.a.density]"),
     ("[media.a]\ndensity = { grid = 'a.npy', box = [[0, 0, 0], [1, 1, 1]], surface = 0 }", 2, 59, "unknown key `surface`"),
     ("[media.a]\ndensity = { grid = 'a.npy' }", 2, 11, "[media.a.density] has no `box`: write the least and the"),
@@ -204,7 +217,7 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.ice]\nmodel = 'iceberg'", 2, 1, "unknown key `model` in [media.ice]"),
     ("[render]\nsample = 4", 2, 1, "did you mean `samples`?"),
     ("[render]\ntarget_error = 0.1", 2, 1, "unknown key `target_error` in [render]"),
-    ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\naperture = 1", 4, 1, "unknown key `aperture` in [camera]"),
+    ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\nlens = 1", 4, 1, "unknown key `lens` in [camera]"),
     ("[camera]\ntarget = [0, 0, 0]\neyes = [1, 1, 1]", 3, 1, "unknown key `eyes` in [camera]; did you mean `eye`?"),
     ("[media.sea]\nzz = 1\nior = 1\naa = 2", 2, 1, "unknown key `zz`"),
     ("[media.a]\nphase = { kind = 'isotropic', g = 0.5 }", 2, 31, "unknown key `g` in [media.a.phase]"),
@@ -250,6 +263,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[frames]\npath = 'é'\nfps = '24'", 3, 7, "frames.fps: '24': write a number"),
     ("[frames]\npath = 'f'\nup = 'w'", 3, 6, "frames.up: 'w': write one of `x`, `y`, `z`, `-x`, `-y` and `-z`"),
     ("[frames]\npath = 'f'\nnormals = 'smoth'", 3, 11, "frames.normals: 'smoth': did you mean `smooth`?"),
+    ("[frames]\npath = 'f'\nvelocity = false", 3, 12, "frames.velocity: false: write \"auto\", \"none\", \"frames\" or"),
     ("[frames]\npath = 'f'\ninside = 1.0", 3, 10, "frames.inside: 1.0: write a whole number"),
     ("[media.a]\nior = 'water'", 2, 7, "media.a.ior: 'water': write a number, { table = \"water\" }"),
     ("[media.a]\nior = [1, 1, 1]", 2, 7, "media.a.ior: [1, 1, 1]: write a number, {"),
@@ -273,7 +287,7 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[render]\nfilter = 1979-05-27", 2, 10, "write one of `box`, `gaussian` and `blackman-harris` in quotes"),
     ("[output]\npng = 'yes'", 2, 7, "output.png: 'yes': write true or false"),
     ("[output]\naovs = 'N'", 2, 8, "output.aovs: 'N': write a list such as"),
-    ("[output]\naovs = ['N', 'motion']", 2, 14, "output.aovs[1]: 'motion': write one of `albedo`"),
+    ("[output]\naovs = ['N', 'velocity']", 2, 14, "output.aovs[1]: 'velocity': write one of `albedo`"),
     ("[output]\naovs = ['N', 'Z', 'N']", 2, 19, "output.aovs[2]: 'N': this layer is there twice: keep it once"),
     ("[output]\npath = ''", 2, 8, "output.path: '': write a pattern such as"),
 ];
@@ -408,8 +422,12 @@ const WRONG_RELATIONS: &[Wrong] = &[
 
 #[test]
 fn every_wrong_text_is_named_with_its_place() {
+    assert_wrong(&[WRONG_KEYS, WRONG_TYPES, WRONG_NUMBERS, WRONG_RELATIONS].concat());
+}
+
+fn assert_wrong(texts: &[Wrong]) {
     let mut failures = Vec::new();
-    for (text, line, column, fragment) in [WRONG_KEYS, WRONG_TYPES, WRONG_NUMBERS, WRONG_RELATIONS].concat() {
+    for (text, line, column, fragment) in texts {
         let message = parse(text).map_or_else(|error| error.to_string(), |_| "it was read".to_owned());
         if !message.starts_with(&format!("folder/s.toml:{line}:{column}: ")) || !message.contains(fragment) {
             failures.push(format!("{text}\n  expected {line}:{column}: {fragment}\n  but was {message}\n"));

@@ -55,6 +55,7 @@ impl Accel {
     /// stays as it is.
     pub fn rebuild(&mut self, positions: &[Vec3], triangles: &[[u32; 3]], still: usize) {
         debug_assert!(still <= triangles.len());
+        self.motion = None;
         let soup = Soup { positions, triangles };
         if still != self.still.triangles {
             self.still = Still::NOTHING;

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::Accel;
 use super::machine::{Lanes, Stack, WithLanes, with_best};
+use super::moving::{Moment, Moving, Standing};
 use super::traverse::{nearest_first, pop};
 use crate::geometry::triangle::squared_distance;
 
@@ -14,41 +15,48 @@ use crate::geometry::triangle::squared_distance;
 const WITHIN_ROUNDING: f32 = 0.999;
 
 impl Accel {
-    /// The radius of a ball around `point` in which there is no triangle: a little less than the distance to the nearest,
+    /// The radius of a ball around `point` in which there is no triangle at a time in frames: a little less than the distance to the nearest,
     /// but for the rounding of coordinates; infinite without triangles.
-    pub fn clearance(&self, point: Vec3) -> f32 {
-        with_best(Clearance { accel: self, point })
+    pub fn clearance(&self, point: Vec3, time: f32) -> f32 {
+        match &self.motion {
+            None => with_best(Clearance { accel: self, moment: Standing(self), point }),
+            Some(motion) => {
+                let moment = Moving { accel: self, motion, time };
+                with_best(Clearance { accel: self, moment, point })
+            }
+        }
     }
 }
 
-struct Clearance<'a> {
+struct Clearance<'a, M> {
     accel: &'a Accel,
+    moment: M,
     point: Vec3,
 }
 
-impl WithLanes for Clearance<'_> {
+impl<'a, M: Moment<'a>> WithLanes for Clearance<'a, M> {
     type Output = f32;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
-        let Self { accel, point } = self;
+        let Self { accel, moment, point } = self;
         let coordinates = [L::splat(point.x), L::splat(point.y), L::splat(point.z)];
         let mut least = f32::INFINITY;
         let mut stack = Stack::new();
         let mut next = accel.root();
         while let Some(child) = next {
             if let Some(index) = child.as_node() {
-                let node = &accel.nodes[index];
-                let squared = node.squared_distances(&coordinates);
+                let (node, change) = moment.node(index);
+                let squared = node.squared_distances(change, &coordinates);
                 let nearer = squared.at_most(L::splat(least));
                 if nearer != 0 {
                     next = Some(nearest_first(&mut stack, squared, nearer, &node.children));
                     continue;
                 }
             } else if let Some(index) = child.as_leaf() {
-                let leaf = &accel.leaves[index];
+                let (leaf, change) = moment.leaf(index);
                 for lane in 0..leaf.len() {
-                    least = least.min(squared_distance(point, &leaf.triangle(lane)));
+                    least = least.min(squared_distance(point, &leaf.triangle(lane, change)));
                 }
             }
             next = pop(&mut stack, least);
@@ -82,11 +90,14 @@ mod tests {
             })
             .collect();
         for point in (0..2000).map(|i| number(5000 + i) * 1.5) {
-            let radius = accel.clearance(point);
+            let radius = accel.clearance(point, 0.0);
             let nearest = on_triangles.iter().map(|p| p.distance(point)).fold(f32::INFINITY, f32::min);
             assert!(radius <= nearest && radius > 0.99 * nearest - 0.01, "{radius} {nearest}");
-            assert_eq!(radius, Clearance { accel: &accel, point }.run::<Portable>());
+            assert_eq!(
+                radius,
+                Clearance { accel: &accel, moment: Standing(&accel), point }.run::<Portable>()
+            );
         }
-        assert_eq!(Accel::default().clearance(Vec3::ZERO), f32::INFINITY);
+        assert_eq!(Accel::default().clearance(Vec3::ZERO, 0.0), f32::INFINITY);
     }
 }

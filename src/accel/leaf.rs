@@ -8,6 +8,7 @@ use glam::{Vec3, Vec3A, Vec4};
 
 use super::TriangleId;
 use super::machine::{Eight, Lanes};
+use super::moving::{Change, Unchanged};
 use crate::geometry::Bounds;
 use crate::geometry::triangle::{EdgeHit, GREATEST_NUMERATOR, LEAST_NUMERATOR, RayCast};
 
@@ -87,8 +88,14 @@ impl Leaf {
 
     /// The box around the triangles.
     pub fn bounds(&self) -> Bounds {
-        let halves = self.vertices.each_ref().map(|of_axis| {
-            let [a, b, c, d, e, f, g, h] = of_axis.0;
+        self.bounds_at(Unchanged)
+    }
+
+    /// The box around the triangles after a change.
+    pub fn bounds_at(&self, change: impl Change<Self>) -> Bounds {
+        let halves = [0, 1, 2].map(|axis| {
+            let [a, b, c, d, e, f, g, h] =
+                std::array::from_fn(|i| change.number(self, |leaf| leaf.vertices[axis].0[i]));
             [Vec4::new(a, b, c, d), Vec4::new(e, f, g, h)]
         });
         Bounds {
@@ -109,28 +116,27 @@ impl Leaf {
     }
 
     /// The vertices of the triangle in a lane.
-    pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.turned_triangle(lane, [0, 1, 2]).map(Vec3::from)
+    pub fn triangle(&self, lane: usize, change: impl Change<Self>) -> [Vec3; 3] {
+        self.turned_triangle(lane, change, [0, 1, 2]).map(Vec3::from)
     }
 
     /// The vertices of the triangle in a lane, their coordinates in the order of `axes`.
     #[inline(always)]
-    pub fn turned_triangle(&self, lane: usize, axes: [usize; 3]) -> [Vec3A; 3] {
-        let [x, y, z] = axes.map(|axis| &self.vertices[axis].0);
+    pub fn turned_triangle(&self, lane: usize, change: impl Change<Self>, axes: [usize; 3]) -> [Vec3A; 3] {
         let vertex = |corner: usize| {
             let vertex = usize::from(self.corners[corner][lane] & 7);
-            Vec3A::new(x[vertex], y[vertex], z[vertex])
+            Vec3A::from(axes.map(|axis| change.number(self, |leaf| leaf.vertices[axis].0[vertex])))
         };
         [vertex(0), vertex(1), vertex(2)]
     }
 
     /// The triangles that the ray may meet; none that it does meet is left out.
     #[inline(always)]
-    pub fn candidates<L: Lanes>(&self, ray: &LeafRay<L>) -> Option<Candidates> {
-        let [kx, ky, kz] = ray.axes;
-        let z = L::load(&self.vertices[kz]).sub(ray.origin[2]);
-        let x = L::load(&self.vertices[kx]).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
-        let y = L::load(&self.vertices[ky]).sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
+    pub fn candidates<L: Lanes>(&self, change: impl Change<Self>, ray: &LeafRay<L>) -> Option<Candidates> {
+        let [x, y, z]: [L; 3] = ray.axes.map(|axis| change.lanes(self, |leaf| &leaf.vertices[axis]));
+        let z = z.sub(ray.origin[2]);
+        let x = x.sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
+        let y = y.sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
         let [a, b, c] = &self.corners;
         let (ax, bx, cx) = (x.pick(a), x.pick(b), x.pick(c));
         let (ay, by, cy) = (y.pick(a), y.pick(b), y.pick(c));

@@ -1,7 +1,7 @@
 //! The hierarchy that finds what a ray meets first.
 //!
 //! [`Accel::build`] takes positions and index triples; [`Accel::refit`] takes new positions for the same triples, and
-//! [`Accel::update`] decides between the two.
+//! [`Accel::update`] decides between the two. [`Accel::set_in_motion`] lets the vertices move within a frame.
 //! [`Accel::closest`] and [`Accel::occluded`] answer rays. Hits are decided by the triangle alone
 //! ([`crate::geometry::triangle`]) and ties by the lower index, so the answer does not depend on the tree: built,
 //! refitted, or built another way, it is the same to the last bit.
@@ -9,7 +9,7 @@
 //! The way of a ray: `machine` has the wide registers and all `unsafe` code, `node` the boxes, `leaf` the triangles,
 //! `traverse` the walk. The way of a mesh: `scales` parts it by size, `clusters` gathers triangles into leaves,
 //! `build` has the binary tree over them made, `collapse` makes it wide; `connectivity`, `update`, `refit` and `cost`
-//! lead from one frame to the next.
+//! lead from one frame to the next, and `moving` from the opening of the shutter to its closing.
 #![doc = include_str!("measured.md")]
 
 mod build;
@@ -20,6 +20,7 @@ mod connectivity;
 mod cost;
 mod leaf;
 mod machine;
+mod moving;
 mod node;
 mod refit;
 mod scales;
@@ -37,6 +38,7 @@ use glam::Vec3;
 use crate::geometry::Bounds;
 use build::Still;
 use leaf::{Leaf, LeafIds};
+use moving::Motion;
 use node::{Child, Node};
 
 /// Index of a triangle in the order it was given in.
@@ -69,6 +71,8 @@ pub struct Accel {
     built_cost: Option<f32>,
     /// What stays when the rest is built anew.
     still: Still,
+    /// What moves while the shutter is open; `None` where nothing does.
+    motion: Option<Box<Motion>>,
 }
 
 /// Deepest tree that is ever traversed; the builder falls back to a balanced tree beyond it.
@@ -98,6 +102,7 @@ impl Accel {
 
     /// Bytes that the hierarchy occupies.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + size_of_val(&*self.ids)
+        let moving = self.motion.as_ref().map_or(0, |motion| motion.bytes());
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + size_of_val(&*self.ids) + moving
     }
 }

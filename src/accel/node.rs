@@ -1,6 +1,7 @@
 //! Boxes of eight children.
 
 use super::machine::{Eight, Lanes};
+use super::moving::Change;
 use crate::geometry::Bounds;
 use crate::geometry::triangle::{OUTER_PADDING, Slabs, padded};
 
@@ -34,6 +35,9 @@ impl Node {
         children: [Child::NOTHING; 8],
     };
 
+    /// What a node changes by whose children stand still.
+    pub const UNMOVED: Self = Self { planes: [[Eight([0.0; 8]); 2]; 3], children: [Child::NOTHING; 8] };
+
     /// Puts a child into a lane.
     pub fn hang(&mut self, lane: usize, bounds: Bounds, child: Child) {
         self.children[lane] = child;
@@ -42,7 +46,11 @@ impl Node {
 
     /// Gives the child in a lane another box.
     pub fn set_bounds(&mut self, lane: usize, bounds: Bounds) {
-        let Bounds { min, max } = padded(bounds, OUTER_PADDING);
+        self.set_planes(lane, padded(bounds, OUTER_PADDING));
+    }
+
+    /// Sets the numbers of a lane, as they are.
+    pub fn set_planes(&mut self, lane: usize, Bounds { min, max }: Bounds) {
         for axis in 0..3 {
             self.planes[axis][0].0[lane] = min[axis];
             self.planes[axis][1].0[lane] = max[axis];
@@ -57,10 +65,10 @@ impl Node {
 
     /// Where the ray enters the boxes, and a bit for each that it enters before or at `t_max`.
     #[inline(always)]
-    pub fn enter<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (L, u32) {
+    pub fn enter<L: Lanes>(&self, change: impl Change<Self>, ray: &NodeRay<L>, t_max: f32) -> (L, u32) {
         let distance = |side: usize, a: usize| {
-            let planes = &self.planes[a][ray.signs[a] ^ side];
-            L::load(planes).scaled(ray.inverse[a], ray.offsets[a][side])
+            let planes: L = change.lanes(self, |node| &node.planes[a][ray.signs[a] ^ side]);
+            planes.scaled(ray.inverse[a], ray.offsets[a][side])
         };
         let near = distance(0, 0).max(distance(0, 1)).max(distance(0, 2).max(L::splat(0.0)));
         let far = distance(1, 0).min(distance(1, 1)).min(distance(1, 2).min(L::splat(t_max)));
@@ -71,10 +79,10 @@ impl Node {
 impl Node {
     /// Squares of the distances from a point to the boxes.
     #[inline(always)]
-    pub fn squared_distances<L: Lanes>(&self, point: &[L; 3]) -> L {
+    pub fn squared_distances<L: Lanes>(&self, change: impl Change<Self>, point: &[L; 3]) -> L {
         let along = |a: usize| {
-            let [min, max] = &self.planes[a];
-            let outside = L::load(min).sub(point[a]).max(point[a].sub(L::load(max))).max(L::splat(0.0));
+            let [min, max]: [L; 2] = [0, 1].map(|side| change.lanes(self, |node| &node.planes[a][side]));
+            let outside = min.sub(point[a]).max(point[a].sub(max)).max(L::splat(0.0));
             outside.mul(outside)
         };
         along(0).add(along(1)).add(along(2))

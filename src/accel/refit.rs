@@ -9,6 +9,7 @@ impl Accel {
     /// Moves the vertices; `triangles` are those that the hierarchy was built from. Still ones are left alone.
     pub fn refit(&mut self, positions: &[Vec3], triangles: &[[u32; 3]]) {
         debug_assert_eq!(triangles.len(), self.triangles);
+        self.motion = None;
         let still = self.still.leaves;
         for (leaf, ids) in self.leaves[still..].iter_mut().zip(&self.ids[still..]) {
             leaf.refit(ids, positions, triangles);

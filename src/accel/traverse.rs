@@ -2,6 +2,7 @@
 
 use super::leaf::{Candidates, Leaf, LeafRay};
 use super::machine::{Eight, Lanes, Stack, WithLanes, with_best};
+use super::moving::{Moment, Motion, Moving, Standing};
 use super::node::{Child, Node, NodeRay};
 use super::{Accel, Hit, MAX_DEPTH, TriangleId};
 use crate::geometry::Ray;
@@ -84,19 +85,33 @@ pub(super) fn nearest_first<L: Lanes>(
 impl Accel {
     /// The nearest triangle at or before `ray.t_max`; the lower index among those at the same distance.
     pub fn closest(&self, ray: &Ray, ignored: Ignored) -> Option<Hit> {
-        with_best(Query { accel: self, ray, ignored, seeker: Nearest })
+        self.ask(ray, ignored, Nearest)
     }
 
     /// True when anything but the ignored triangles lies at or before `ray.t_max`.
     pub fn occluded(&self, ray: &Ray, ignored: Ignored) -> bool {
-        with_best(Query { accel: self, ray, ignored, seeker: Anything })
+        self.ask(ray, ignored, Anything)
     }
 
     /// Shows every hit at or before `ray.t_max` to `visit`, in no particular order, until that returns true.
     ///
     /// This is what a shadow ray through transparent sheets asks for: one walk instead of one a sheet.
     pub fn each_hit(&self, ray: &Ray, ignored: Ignored, visit: impl FnMut(Hit) -> bool) {
-        with_best(Query { accel: self, ray, ignored, seeker: Each(visit) });
+        self.ask(ray, ignored, Each(visit));
+    }
+
+    #[inline(always)]
+    fn ask<S: Seeker>(&self, ray: &Ray, ignored: Ignored, seeker: S) -> S::Found {
+        match &self.motion {
+            None => with_best(Query { accel: self, moment: Standing(self), ray, ignored, seeker }),
+            Some(motion) => self.ask_moving(motion, ray, ignored, seeker),
+        }
+    }
+
+    #[inline(never)]
+    fn ask_moving<S: Seeker>(&self, motion: &Motion, ray: &Ray, ignored: Ignored, seeker: S) -> S::Found {
+        let moment = Moving { accel: self, motion, time: ray.time };
+        with_best(Query { accel: self, moment, ray, ignored, seeker })
     }
 }
 
@@ -149,19 +164,20 @@ impl<V: FnMut(Hit) -> bool> Seeker for Each<V> {
 }
 
 /// A walk through the tree.
-struct Query<'a, S> {
+struct Query<'a, M, S> {
     accel: &'a Accel,
+    moment: M,
     ray: &'a Ray,
     ignored: Ignored,
     seeker: S,
 }
 
-impl<S: Seeker> WithLanes for Query<'_, S> {
+impl<'a, M: Moment<'a>, S: Seeker> WithLanes for Query<'a, M, S> {
     type Output = S::Found;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> S::Found {
-        let Self { accel, ray, ignored, mut seeker } = self;
+        let Self { accel, moment, ray, ignored, mut seeker } = self;
         let mut found = S::Found::default();
         let Some(root) = accel.root() else { return found };
         let cast = RayCast::new(ray);
@@ -171,17 +187,17 @@ impl<S: Seeker> WithLanes for Query<'_, S> {
         let mut next = Some(root);
         while let Some(child) = next {
             if let Some(index) = child.as_node() {
-                let node = &accel.nodes[index];
-                let (near, entered) = node.enter(&node_ray, t_max);
+                let (node, change) = moment.node(index);
+                let (near, entered) = node.enter(change, &node_ray, t_max);
                 if entered != 0 {
                     next = Some(nearest_first(&mut stack, near, entered, &node.children));
                     continue;
                 }
             } else if let Some(index) = child.as_leaf() {
-                let leaf = &accel.leaves[index];
-                let mut candidates = leaf.candidates(&leaf_ray);
+                let (leaf, change) = moment.leaf(index);
+                let mut candidates = leaf.candidates(change, &leaf_ray);
                 while let Some((lane, edges)) = candidates.as_mut().and_then(Candidates::next) {
-                    let turned = leaf.turned_triangle(lane, cast.turn.axes());
+                    let turned = leaf.turned_triangle(lane, change, cast.turn.axes());
                     let Some(hit) = cast.settle(edges, turned, t_max) else { continue };
                     let triangle = accel.ids[index][lane];
                     let TriangleHit { t, barycentric, from_front } = hit;
@@ -253,9 +269,9 @@ mod tests {
             for (origin, direction) in rays.into_iter().filter(|(_, direction)| *direction != Vec3::ZERO) {
                 let ray = &Ray::new(origin * (3.0 * scale), direction.normalize());
                 let ignored = Ignored::NOTHING;
-                let closest = Query { accel, ray, ignored, seeker: Nearest }.run::<Portable>();
+                let closest = Query { accel, moment: Standing(accel), ray, ignored, seeker: Nearest }.run::<Portable>();
                 prop_assert_eq!(closest, accel.closest(ray, ignored));
-                let occluded = Query { accel, ray, ignored, seeker: Anything }.run::<Portable>();
+                let occluded = Query { accel, moment: Standing(accel), ray, ignored, seeker: Anything }.run::<Portable>();
                 prop_assert_eq!(occluded, accel.occluded(ray, ignored));
             }
         }

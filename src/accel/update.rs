@@ -96,7 +96,8 @@ impl Accel {
 
     /// Becomes a copy of another hierarchy in the memory that this one has.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { nodes, leaves, ids, bounds, triangles, built_cost, still } = other;
+        let Self { nodes, leaves, ids, bounds, triangles, built_cost, still, motion: _ } = other;
+        self.motion = None;
         self.nodes.clone_from(nodes);
         self.leaves.clone_from(leaves);
         self.ids.clone_from(ids);
@@ -108,6 +109,7 @@ impl Accel {
     /// Refits with other indices: `new_ids` has the new one of each old one. `triangles` are the new ones, which may
     /// begin at other corners.
     fn renumber(&mut self, new_ids: &[TriangleId], positions: &[Vec3], triangles: &[[u32; 3]]) {
+        self.motion = None;
         let first = self.still.leaves;
         for (leaf, ids) in self.leaves.iter_mut().zip(&mut self.ids).skip(first) {
             let ids = &mut ids[..leaf.len()];

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::moving::Unchanged;
 use super::{Accel, MAX_DEPTH, Node};
 use crate::geometry::Bounds;
 
@@ -22,7 +23,7 @@ impl Accel {
                 if std::mem::replace(&mut seen[id as usize], true) {
                     return Err(format!("triangle {id} is in two leaves"));
                 }
-                if leaf.triangle(lane) != triangles[id as usize].map(|i| positions[i as usize]) {
+                if leaf.triangle(lane, Unchanged) != triangles[id as usize].map(|i| positions[i as usize]) {
                     return Err(format!("triangle {id} has other vertices in its leaf"));
                 }
             }

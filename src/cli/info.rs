@@ -12,6 +12,7 @@ use crate::integrator::Integrator;
 use crate::mesh::Region;
 use crate::optics::density::Density;
 use crate::scene::assembly::Assembled;
+use crate::scene::camera_path::StartPlaces;
 use crate::scene::description::{DensityDescription, MeshContents};
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
@@ -50,7 +51,8 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
     let integrator = Integrator::new(&job.world.description.render);
     let mut previous = None;
     for task in chosen {
-        let assembled = job.world.assemble(task.number, task.read()?, previous.as_ref())?;
+        let meshes = task.read(&job.world.velocity_name())?;
+        let assembled = job.world.assemble(task.number, meshes, previous.as_ref())?;
         *text += &describe_frame(&task.number.to_string(), &assembled, &integrator);
         previous = Some(assembled.frame);
     }
@@ -74,7 +76,7 @@ fn describe_job(job: &Job) -> String {
             let _ = writeln!(text, "missing   {}", list.join(", "));
         }
     }
-    let [width, height] = world.camera.resolution();
+    let [width, height] = world.description.camera.resolution;
     let render = &world.description.render;
     let _ =
         writeln!(text, "picture   {width} x {height}, {} samples, {}", render.samples, job.output_pattern());
@@ -162,7 +164,11 @@ fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) 
     for (interface, count) in &assembled.interfaces {
         let _ = writeln!(text, "    between {} and {}: {count}", interface.front.0, interface.back.0);
     }
-    let _ = writeln!(text, "  camera in {}", frame.medium(frame.camera_medium).name);
+    let camera_in = match frame.starts {
+        StartPlaces::One(place) => &frame.medium(place.medium).name,
+        StartPlaces::Several => "more than one medium",
+    };
+    let _ = writeln!(text, "  camera in {camera_in}");
     let hierarchy = assembled.update.hierarchy.name();
     let _ = writeln!(text, "  hierarchy {hierarchy}, {} bytes", frame.accel.bytes());
     let _ = writeln!(text, "  integrator {}", integrator.name());

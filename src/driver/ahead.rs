@@ -11,7 +11,8 @@ use rayon::ThreadPool;
 
 use super::error::RenderError;
 use super::job::FrameTask;
-use crate::scene::assembly::{Assembled, Buffers};
+use crate::mesh;
+use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
 use crate::scene::frame::Frame;
 use crate::scene::world::World;
 
@@ -92,11 +93,39 @@ pub(super) fn one_ahead(
 
 fn prepare(world: &World, task: &FrameTask, previous: Option<&Frame>, buffers: Buffers) -> Outcome {
     let mut preparation = Preparation::default();
-    let outcome = timed(&mut preparation.read_seconds, || task.read()).and_then(|meshes| {
-        let assemble = || world.assemble_into(buffers, task.number, meshes, previous);
-        Ok(timed(&mut preparation.build_seconds, assemble)?)
-    });
+    let outcome =
+        timed(&mut preparation.read_seconds, || read(world, task)).and_then(|(meshes, warnings)| {
+            let assemble = || world.assemble_into(buffers, task.number, meshes, previous);
+            let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
+            assembled.warnings.extend(warnings);
+            Ok(assembled)
+        });
     (outcome, preparation)
+}
+
+/// The meshes of a frame, and what there is to say about their velocities.
+fn read(world: &World, task: &FrameTask) -> Result<(Vec<FrameMesh>, Vec<String>), RenderError> {
+    let mut meshes = task.read(&world.velocity_name())?;
+    let mut warnings = Vec::new();
+    if world.follows_vertices() {
+        for (i, mesh) in meshes.iter_mut().enumerate() {
+            let unknown = follow_next(world, task, i, mesh).err();
+            warnings.extend(unknown.map(|why| format!("{}: {why}; {STANDS_STILL}", mesh.path.display())));
+        }
+    }
+    Ok((meshes, warnings))
+}
+
+const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
+
+/// Takes the velocities of mesh `i` from the next frame, or tells why not: whatever is wrong with that one, its turn is
+/// still to come.
+fn follow_next(world: &World, task: &FrameTask, i: usize, mesh: &mut FrameMesh) -> Result<(), String> {
+    let next = task.next.as_ref().ok_or("there is no next frame to take velocities from")?;
+    let after = mesh::read(&next.files[i]).map_err(|e| format!("the next frame cannot be followed: {e}"))?;
+    let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
+    let fps = world.frames().map_or(24.0, |f| f.fps);
+    mesh::follow(&mut mesh.mesh, &after, frames / fps).map_err(|e| e.to_string())
 }
 
 /// Adds the time that some work takes.

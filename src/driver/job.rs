@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::error::RenderError;
 use super::meshes::MeshSequence;
 use crate::film::write::write_atomically;
-use crate::mesh::{self, RawMesh};
+use crate::mesh::{self, RawMesh, VelocityName};
 use crate::scene::FrameError;
 use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
@@ -40,19 +40,30 @@ pub struct FrameTask {
     pub number: FrameNumber,
     /// The meshes that are its own; none for a still without `[frames]`.
     pub files: Vec<PathBuf>,
+    /// The frame after it in the sequence, whether it is rendered or not.
+    pub next: Option<NextFrame>,
+}
+
+/// The frame after another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NextFrame {
+    /// Its number.
+    pub number: FrameNumber,
+    /// Its meshes, in the order of the other's.
+    pub files: Vec<PathBuf>,
 }
 
 impl FrameTask {
-    /// Reads its meshes.
+    /// Reads its meshes, with velocities of that name.
     ///
     /// # Errors
     /// When one cannot be read.
-    pub fn read(&self) -> Result<Vec<FrameMesh>, RenderError> {
+    pub fn read(&self, velocity: &VelocityName) -> Result<Vec<FrameMesh>, RenderError> {
         let read = |path: &PathBuf| {
             if self.files.len() > 1 && !path.is_file() {
                 return Err(RenderError::MissingMesh { path: path.clone(), number: self.number });
             }
-            let mesh = mesh::read(path).map_err(FrameError::from)?;
+            let mesh = mesh::read_with(path, velocity).map_err(FrameError::from)?;
             Ok(FrameMesh { path: path.clone(), mesh })
         };
         self.files.iter().map(read).collect()
@@ -85,16 +96,19 @@ impl Job {
     pub fn tasks(&self) -> Vec<FrameTask> {
         if self.files.is_empty() {
             let first = FrameNumber::from_integer(1).unwrap_or_default();
-            return vec![FrameTask { number: first, files: Vec::new() }];
+            return vec![FrameTask { number: first, files: Vec::new(), next: None }];
         }
-        let task = |file: &FrameFile| FrameTask {
-            number: file.number,
-            files: match self.meshes.as_slice() {
-                [] => vec![file.path.clone()],
-                meshes => meshes.iter().map(|mesh| mesh.file(file.number)).collect(),
-            },
+        let meshes_of = |file: &FrameFile| match self.meshes.as_slice() {
+            [] => vec![file.path.clone()],
+            meshes => meshes.iter().map(|mesh| mesh.file(file.number)).collect(),
         };
-        self.files.iter().map(task).collect()
+        let next_of = |file: &FrameFile| NextFrame { number: file.number, files: meshes_of(file) };
+        let task = |(i, file): (usize, &FrameFile)| FrameTask {
+            number: file.number,
+            files: meshes_of(file),
+            next: self.files.get(i + 1).map(next_of),
+        };
+        self.files.iter().enumerate().map(task).collect()
     }
 
     /// The frames of a selection, in order.

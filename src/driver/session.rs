@@ -11,6 +11,7 @@ use super::tiles::{Sampling, render_pixels};
 use crate::accel::Hierarchy;
 use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::scene::assembly::Assembled;
+use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
 use crate::sequence::{FrameNumber, output_path};
 use crate::spectrum::LaneMode;
@@ -129,17 +130,24 @@ impl<'a> Session<'a> {
             record.warnings.push(text);
         }
         let output = record.output.clone();
-        timed(&mut record.write_seconds, || self.write(&image, task.number, &output))
+        let camera = &assembled.frame.views.opening;
+        timed(&mut record.write_seconds, || self.write(&image, camera, task.number, &output))
     }
 
-    fn write(&self, image: &FrameImage, number: FrameNumber, path: &Path) -> Result<(), RenderError> {
+    fn write(
+        &self,
+        image: &FrameImage,
+        camera: &Camera,
+        number: FrameNumber,
+        path: &Path,
+    ) -> Result<(), RenderError> {
         let world = &self.job.world;
         let output = &world.description.output;
         let metadata = ImageMetadata {
             frame_number: number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
             fps: world.frames().map_or(24.0, |f| f.fps),
-            world_to_camera: world.camera.world_to_camera(world.origin),
-            world_to_ndc: world.camera.world_to_ndc(world.origin),
+            world_to_camera: camera.world_to_camera(world.origin),
+            world_to_ndc: camera.world_to_ndc(world.origin),
             attributes: self.attributes(number),
         };
         let png = output.png.then(|| path.with_extension("png"));

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
 use crate::integrator::{Counters, EyeSample, Integrator, PhotonFrame, PhotonPass, Scratch};
 use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
+use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
 use crate::scene::frame::Frame;
 use crate::spectrum::{Wavelengths, film_rgb};
@@ -48,7 +49,7 @@ pub fn render_pixels(
     sampling: &Sampling,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (FrameImage, Counters) {
-    let [width, height] = frame.camera.resolution();
+    let [width, height] = frame.views.opening.resolution();
     let rects = tiles(width, height, TILE_SIZE);
     let (tiles, mut counters) = match &sampling.integrator {
         Integrator::Photon(mapper) => {
@@ -136,7 +137,7 @@ fn render_pixel(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, at: [
     pixel.finish()
 }
 
-/// Adds sample `index` of a pixel; `photons` are those of its pass, whose wavelengths it takes.
+/// Adds sample `index` of a pixel; `photons` are those of its pass, whose wavelengths and time it takes.
 fn add_sample(
     frame: &Frame,
     sampling: &Sampling,
@@ -147,15 +148,29 @@ fn add_sample(
     photons: Option<&PhotonPass>,
 ) {
     let mut stream = SampleStream::new(sampling.seed, x, y, index);
-    let [u, v, w, _] = stream.next4();
+    let [u, v, w, t] = stream.next4();
     let offset = sampling.filter.sample([u, v]);
     let wavelengths = photons.map_or_else(|| Wavelengths::for_mode(frame.mode, w), |pass| pass.wavelengths);
-    let point = [x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y];
-    let sample = sampling.integrator.sample(frame, scratch, point, &wavelengths, stream, photons);
-    pixel.add((index % REPLICATES) as usize, &film_sample(frame, &sample, &wavelengths));
+    let time = photons.map_or_else(|| frame.views.time(t), |pass| pass.time);
+    let camera = frame.views.at(time);
+    let (x, y) = (x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y);
+    let eye = if camera.has_lens() {
+        let [u, v, ..] = stream.next4();
+        camera.ray_through_lens(x, y, [u, v])
+    } else {
+        camera.ray(x, y)
+    };
+    let sample =
+        sampling.integrator.sample(frame, scratch, &eye.at_time(time), &wavelengths, stream, photons);
+    pixel.add((index % REPLICATES) as usize, &film_sample(frame, (&camera, time), &sample, &wavelengths));
 }
 
-fn film_sample(frame: &Frame, sample: &EyeSample, wavelengths: &Wavelengths) -> FilmSample {
+fn film_sample(
+    frame: &Frame,
+    (camera, time): (&Camera, f32),
+    sample: &EyeSample,
+    wavelengths: &Wavelengths,
+) -> FilmSample {
     let radiance = film_rgb(frame.mode, wavelengths, sample.radiance);
     match &sample.first {
         None => FilmSample::of_sky(radiance),
@@ -165,7 +180,8 @@ fn film_sample(frame: &Frame, sample: &EyeSample, wavelengths: &Wavelengths) -> 
             albedo: frame.colour_of(first.albedo, wavelengths),
             normal: first.normal,
             position: (frame.origin + first.position.as_dvec3()).as_vec3(),
-            depth: frame.camera.depth(first.position),
+            depth: camera.depth(first.position),
+            motion: frame.views.motion(camera, time, first.position, first.motion),
             hit: true,
         },
     }

@@ -17,7 +17,7 @@
 //!
 //! Sums are f64. A sample with a number that is not finite is left out and counted.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::spectrum::luminance::luminance_f64;
 
@@ -42,6 +42,8 @@ pub struct FilmSample {
     pub position: Vec3,
     /// Depth of the first surface in metres; ignored unless `hit`.
     pub depth: f32,
+    /// Where the first surface goes until the next frame, in pixels to the right and down; ignored unless `hit`.
+    pub motion: Vec2,
     /// Whether there is a first surface.
     pub hit: bool,
 }
@@ -57,6 +59,7 @@ impl FilmSample {
             normal: nothing,
             position: nothing,
             depth: 0.0,
+            motion: Vec2::ZERO,
             hit: false,
         }
     }
@@ -66,7 +69,8 @@ impl FilmSample {
             && self.alpha.is_finite()
             && self.albedo.is_finite()
             && self.normal.is_finite();
-        always && (!self.hit || (self.position.is_finite() && self.depth.is_finite()))
+        always
+            && (!self.hit || (self.position.is_finite() && self.depth.is_finite() && self.motion.is_finite()))
     }
 }
 
@@ -85,6 +89,8 @@ pub struct Pixel {
     pub position: Vec3,
     /// Mean depth of the samples that hit something; [`FAR_DEPTH`] when none did.
     pub depth: f32,
+    /// Mean motion of the samples that hit something, in pixels a frame; 0 when none did.
+    pub motion: Vec2,
     /// Variance of the mean of each channel; 0 when it is unknown.
     pub variance: Vec3,
     /// Variance of the mean luminance; 0 when it is unknown.
@@ -106,6 +112,7 @@ impl Pixel {
         normal: Vec3::ZERO,
         position: Vec3::ZERO,
         depth: FAR_DEPTH,
+        motion: Vec2::ZERO,
         variance: Vec3::ZERO,
         luminance_variance: 0.0,
         samples: 0,
@@ -140,6 +147,7 @@ pub struct PixelAccumulator {
     normal: DVec3,
     position: DVec3,
     depth: f64,
+    motion: DVec2,
     hits: u32,
     rejected: u32,
 }
@@ -166,6 +174,7 @@ impl PixelAccumulator {
         if sample.hit {
             self.position += sample.position.as_dvec3();
             self.depth += f64::from(sample.depth);
+            self.motion += sample.motion.as_dvec2();
             self.hits += 1;
         }
     }
@@ -195,6 +204,7 @@ impl PixelAccumulator {
             normal: (self.normal / n).as_vec3(),
             position,
             depth,
+            motion: (self.motion / f64::from(self.hits.max(1))).as_vec2(),
             variance: variance.as_vec3(),
             luminance_variance: luminance_variance as f32,
             samples,
@@ -239,6 +249,7 @@ mod tests {
             normal: Vec3::Z,
             position: Vec3::ONE,
             depth: 2.0,
+            motion: Vec2::X,
             hit: true,
         }
     }
@@ -354,16 +365,17 @@ mod tests {
             normal: Vec3::ZERO,
             position: Vec3::splat(f32::INFINITY),
             depth: f32::INFINITY,
+            motion: Vec2::NAN,
             hit: false,
         };
         let mut pixel = PixelAccumulator::new();
         pixel.add(0, &grey(0.0));
-        pixel.add(1, &FilmSample { depth: 4.0, normal: Vec3::X, ..grey(0.0) });
+        pixel.add(1, &FilmSample { depth: 4.0, motion: Vec2::Y, normal: Vec3::X, ..grey(0.0) });
         pixel.add(2, &sky);
         pixel.add(3, &sky);
         let pixel = pixel.finish();
         assert_eq!((pixel.alpha, pixel.depth, pixel.position), (0.5, 3.0, Vec3::ONE));
-        assert_eq!(pixel.normal, Vec3::new(0.25, 0.0, 0.25));
+        assert_eq!((pixel.normal, pixel.motion), (Vec3::new(0.25, 0.0, 0.25), Vec2::splat(0.5)));
         assert_eq!(pixel.rejected, 0);
 
         let mut empty = PixelAccumulator::new();

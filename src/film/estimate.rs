@@ -84,7 +84,7 @@ fn two_sided_normal_quantile(probability: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{Vec2, Vec3};
 
     use super::*;
     use crate::film::accumulate::{FilmSample, Pixel, PixelAccumulator};
@@ -98,6 +98,7 @@ mod tests {
             normal: Vec3::ZERO,
             position: Vec3::ZERO,
             depth: 0.0,
+            motion: Vec2::ZERO,
             hit: false,
         }
     }

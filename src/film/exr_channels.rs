@@ -48,6 +48,12 @@ const VARIANCE: [Channel; 4] = [
     Channel { name: "samples", value: |p| p.samples as f32 },
 ];
 
+/// To the right and down, as pixels count.
+const MOTION: [Channel; 2] = [
+    Channel { name: "motion.X", value: |p| p.motion.x },
+    Channel { name: "motion.Y", value: |p| p.motion.y },
+];
+
 fn layer(aov: Aov) -> &'static [Channel] {
     match aov {
         Aov::Albedo => &ALBEDO,
@@ -55,6 +61,7 @@ fn layer(aov: Aov) -> &'static [Channel] {
         Aov::Position => &POSITION,
         Aov::Depth => &DEPTH,
         Aov::Variance => &VARIANCE,
+        Aov::Motion => &MOTION,
     }
 }
 
@@ -83,9 +90,17 @@ mod tests {
     #[test]
     fn channels_are_in_the_formats_order_and_unique() {
         assert_eq!(names(&[]), ["A", "B", "G", "R"]);
-        let all = names(&[Aov::Variance, Aov::Depth, Aov::Position, Aov::Normal, Aov::Albedo, Aov::Depth]);
-        let expected = "A B G N.X N.Y N.Z P.X P.Y P.Z R Z albedo.B albedo.G albedo.R samples variance.B variance.G \
-                        variance.R";
+        let all = names(&[
+            Aov::Variance,
+            Aov::Motion,
+            Aov::Depth,
+            Aov::Position,
+            Aov::Normal,
+            Aov::Albedo,
+            Aov::Depth,
+        ]);
+        let expected = "A B G N.X N.Y N.Z P.X P.Y P.Z R Z albedo.B albedo.G albedo.R motion.X motion.Y samples \
+                        variance.B variance.G variance.R";
         assert_eq!(all.join(" "), expected);
     }
 }

@@ -38,7 +38,7 @@ pub fn minus_ln_of_rest(u: f32) -> f32 {
         -1.666_805_7e-1,
         2.000_071_5e-1,
         -2.499_999_4e-1,
-        3.333_333_1e-1,
+        3.333_333e-1,
     ];
     let p = coefficients.into_iter().fold(7.037_683_6e-2_f32, |p, c| p * x + c);
     let square = x * x;

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// A half line from `origin` along the unit vector `direction`, up to the distance `t_max`.
+/// A half line from `origin` along the unit vector `direction`, up to the distance `t_max`, at one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     /// Where the ray starts, in metres from the scene's origin.
@@ -11,12 +11,20 @@ pub struct Ray {
     pub direction: Vec3,
     /// Only hits nearer than this count, in metres.
     pub t_max: f32,
+    /// When it meets what moves, in frames since the shutter opened.
+    pub time: f32,
 }
 
 impl Ray {
-    /// A ray without end.
+    /// A ray without end, when the shutter opens.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        Self { origin, direction, t_max: f32::INFINITY }
+        Self { origin, direction, t_max: f32::INFINITY, time: 0.0 }
+    }
+
+    /// The same ray at another time.
+    #[must_use]
+    pub fn at_time(self, time: f32) -> Self {
+        Self { time, ..self }
     }
 
     /// The point at distance `t`.

@@ -269,8 +269,13 @@ fn safe_inverse(d: Vec3A) -> Vec3A {
 
 /// A box a little larger than what it holds, by `times` the error of the triangle test.
 pub fn padded(bounds: Bounds, times: f32) -> Bounds {
-    let padding = bounds.min.abs().max(bounds.max.abs()).max_element() * (PADDING * times);
+    let padding = padding(bounds, times);
     Bounds { min: bounds.min - padding, max: bounds.max + padding }
+}
+
+/// How much larger such a box is on each side.
+pub fn padding(bounds: Bounds, times: f32) -> f32 {
+    bounds.min.abs().max(bounds.max.abs()).max_element() * (PADDING * times)
 }
 
 /// The box around a triangle.

@@ -28,7 +28,7 @@ impl AmbientOcclusion {
         let Some(hit) = frame.accel.closest(ray, Ignored::NOTHING) else {
             return EyeSample { radiance: Lanes::ONE, first: None };
         };
-        let hit = frame.geometry.surface_hit(&hit, ray.direction);
+        let hit = frame.geometry.surface_hit(&hit, ray.direction, ray.time);
         let u = stream.next4();
         let local = warp::cosine_hemisphere([u[0], u[1]]);
         let mut wi = Basis::around(hit.ns).to_world(local).normalize();
@@ -36,10 +36,11 @@ impl AmbientOcclusion {
             wi = Basis::around(hit.ng).to_world(local).normalize();
         }
         scratch.counters.shadow_rays += 1;
-        let shadow = Ray::new(hit.point.spawn(hit.ng, wi), wi);
+        let shadow = Ray::new(hit.point.spawn(hit.ng, wi), wi).at_time(ray.time);
         let open = !frame.accel.occluded(&shadow, Ignored::one(hit.triangle));
-        let first =
-            FirstHit { distance: hit.t, position: hit.point.position, normal: hit.ns, albedo: Lanes::ONE };
+        let position = hit.point.position;
+        let motion = frame.geometry.motion(hit.triangle, position, ray.time);
+        let first = FirstHit { distance: hit.t, position, normal: hit.ns, albedo: Lanes::ONE, motion };
         EyeSample { radiance: if open { Lanes::ONE } else { Lanes::ZERO }, first: Some(first) }
     }
 }

@@ -52,7 +52,7 @@ impl<'a> Sample<'a> {
         }
         let weighted = value * (balance(guess_w, pdf_w) / guess_w);
         let origin = receiver.normal.map_or(receiver.position, |hit| hit.point.spawn(hit.ng, wi));
-        weighted * self.light_through_interface(receiver, &Ray::new(origin, wi))
+        weighted * self.light_through_interface(receiver, &self.ray(origin, wi))
     }
 
     /// What a ray sees of the lights that are looked for, on its way through one interface.
@@ -66,13 +66,14 @@ impl<'a> Sample<'a> {
         if pair.matched || incident != receiver.medium {
             return Lanes::ZERO;
         }
-        let point = frame.geometry.surface_hit(&hit, ray.direction);
+        let point = frame.geometry.surface_hit(&hit, ray.direction, self.time);
         let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
         let ways = interface::ways(-ray.direction, point.ns, point.ng, eta_t_over_i);
         let Some(direction) = ways.refracted else { return Lanes::ZERO };
         let passed = (1.0 - ways.reflectance) * self.index_factor(incident, beyond);
         let left = self.transmittance_of(incident, ray, 0.0, hit.t) * passed;
-        left * self.light_along(&Ray::new(point.point.position, direction), hit.triangle, (beyond, insides))
+        let way = self.ray(point.point.position, direction);
+        left * self.light_along(&way, hit.triangle, (beyond, insides))
     }
 
     /// What a ray meets first; what overlaps it hides is looked through.

@@ -99,7 +99,7 @@ impl Sample<'_> {
     /// Transmittance times (n_a / n_b)^2 of the boundaries on the straight way to a light; zero when blocked.
     fn visibility(&mut self, receiver: &Receiver, light: &LightSample) -> Lanes {
         let origin = receiver.normal.map_or(receiver.position, |hit| hit.point.spawn(hit.ng, light.wi));
-        let ray = Ray { origin, direction: light.wi, t_max: light.distance };
+        let ray = Ray { t_max: light.distance, ..self.ray(origin, light.wi) };
         let ignored = Ignored([receiver.leaves, light.triangle.unwrap_or(u32::MAX)]);
         self.scratch.counters.shadow_rays += 1;
         let blocked = if self.frame.needs.matched_interfaces {
@@ -159,7 +159,7 @@ impl Sample<'_> {
     pub(super) fn transmittance_of(&self, medium: MediumId, ray: &Ray, from: f32, to: f32) -> Lanes {
         let mut length = to - from;
         if self.frame.needs.heterogeneous {
-            let way = Ray { origin: ray.at(from), direction: ray.direction, t_max: length };
+            let way = Ray { origin: ray.at(from), t_max: length, ..*ray };
             length = self.frame.medium(medium).density.length(&way);
         }
         self.scratch.media[medium.0 as usize].transmittance(length)

@@ -50,12 +50,12 @@ impl Clearing {
 
     /// The path has collided at a point outside of the ball.
     #[inline]
-    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel) {
+    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) {
         self.radius = -1.0;
         self.collisions += 1;
         if self.collisions >= self.patience {
             self.centre = point;
-            self.radius = accel.clearance(point) - rounding(point, 0.0);
+            self.radius = accel.clearance(point, time) - rounding(point, 0.0);
             self.collisions = 0;
             let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
             // Who has left a large ball is deep in the medium still.
@@ -107,7 +107,7 @@ impl Sample<'_> {
         let medium = self.scratch.media[branch.medium.0 as usize];
         let turns = SCATTERING && self.turns(branch);
         let flight = turns.then(|| medium.free_flight(branch.throughput, u));
-        let endless = Ray::new(branch.origin, branch.direction);
+        let endless = self.ray(branch.origin, branch.direction);
         let to_particle = flight.map_or(f32::INFINITY, |f| match VARIED {
             true => self.frame.medium(branch.medium).density.distance(&endless, f.distance),
             false => f.distance,
@@ -130,7 +130,7 @@ impl Sample<'_> {
             let point = endless.at(to_particle);
             if !VARIED {
                 let clearing = &mut self.scratch.around.clearing;
-                clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+                clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
             }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);
@@ -168,7 +168,7 @@ impl Sample<'_> {
         if VARIED {
             return self.nearest_and_glow(branch, medium, t_max);
         }
-        self.nearest(branch, &Ray { origin: branch.origin, direction: branch.direction, t_max })
+        self.nearest(branch, &Ray { t_max, ..self.ray(branch.origin, branch.direction) })
     }
 
     /// The next surface if it is nearer than `t_max`, and what the medium adds on the way to it, however far it is.
@@ -177,7 +177,7 @@ impl Sample<'_> {
         let glows = source != Lanes::ZERO;
         let photons = self.photons.filter(|_| medium.scatters && branch.lookups_left > 0);
         let reach = if glows || photons.is_some() { f32::INFINITY } else { t_max };
-        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: reach };
+        let ray = Ray { t_max: reach, ..self.ray(branch.origin, branch.direction) };
         let found = self.nearest(branch, &ray);
         if glows {
             let length = self.length::<true>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
@@ -197,7 +197,7 @@ impl Sample<'_> {
         if !VARIED {
             return distance;
         }
-        let ray = Ray { origin: branch.origin, direction: branch.direction, t_max: distance };
+        let ray = Ray { t_max: distance, ..self.ray(branch.origin, branch.direction) };
         self.frame.medium(branch.medium).density.length(&ray)
     }
 
@@ -239,7 +239,7 @@ impl Sample<'_> {
     pub(super) fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
         let slack = 4.0 * rounding(ray.origin, t);
         // In double precision: the squares of areas leave the range of single precision among lengths that are valid.
-        let v = self.frame.geometry.vertices(hit.triangle).map(|p| p.as_dvec3());
+        let v = self.frame.geometry.vertices_at(hit.triangle, self.time).map(|p| p.as_dvec3());
         let scaled = (v[1] - v[0]).cross(v[2] - v[0]);
         let doubled_area = scaled.length();
         // Height over the plane, and distances from the edges, both times twice the area.

@@ -12,7 +12,6 @@
 
 use super::flight::{Around, Event};
 use super::path::{Branch, Fate, Sample};
-use crate::geometry::Ray;
 
 impl Sample<'_> {
     /// The next surface of a path; what is scattered on the way to it becomes a branch of its own.
@@ -22,7 +21,7 @@ impl Sample<'_> {
     ) -> Event {
         let medium = self.scratch.media[branch.medium.0 as usize];
         branch.forced_left -= 1;
-        let endless = Ray::new(branch.origin, branch.direction);
+        let endless = self.ray(branch.origin, branch.direction);
         let found = self.nearest_on_way::<VARIED>(branch, &medium, f32::INFINITY);
         let length = self.length::<VARIED>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
         let mut scattered = *branch;

@@ -60,25 +60,27 @@ struct Face<'f> {
     triangle: u32,
     point: DVec3,
     normal: DVec3,
+    /// When it is there, in frames.
+    time: f32,
     /// Its farthest coordinate.
     size: f64,
 }
 
 impl<'f> Face<'f> {
-    /// The face of a layer at a point on it; `None` for other surfaces.
-    fn new(frame: &'f Frame, triangle: u32, from_front: bool, point: DVec3) -> Option<Self> {
+    /// The face of a layer at a point on it and a time; `None` for other surfaces.
+    fn new(frame: &'f Frame, triangle: u32, from_front: bool, point: DVec3, time: f32) -> Option<Self> {
         let Surface::Layer(layer) = frame.surface(triangle) else { return None };
-        let v = frame.geometry.vertices(triangle).map(|p| p.as_dvec3());
+        let v = frame.geometry.vertices_at(triangle, time).map(|p| p.as_dvec3());
         let normal = (v[1] - v[0]).cross(v[2] - v[0]).normalize_or_zero();
         let size = v.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        Some(Self { layer, from_front, triangle, point, normal, size })
+        Some(Self { layer, from_front, triangle, point, normal, time, size })
     }
 
-    fn at(frame: &'f Frame, hit: &Hit) -> Option<Self> {
-        let v = frame.geometry.vertices(hit.triangle).map(|p| p.as_dvec3());
+    fn at(frame: &'f Frame, hit: &Hit, time: f32) -> Option<Self> {
+        let v = frame.geometry.vertices_at(hit.triangle, time).map(|p| p.as_dvec3());
         let weights = hit.barycentric.as_dvec3();
         let point = v[0] * weights.x + v[1] * weights.y + v[2] * weights.z;
-        Self::new(frame, hit.triangle, hit.from_front, point)
+        Self::new(frame, hit.triangle, hit.from_front, point, time)
     }
 
     fn coincides(&self, other: &Self) -> bool {
@@ -107,7 +109,7 @@ fn cross(frame: &Frame, first: &Face, others: &[Hit], insides: Insides) -> Cross
     let mut beyond = first.layer.beyond(insides, first.from_front);
     let (mut mesh, mut stronger) = (first.layer.mesh, None);
     let coinciding = |hit: &Hit| {
-        let face = Face::at(frame, hit).filter(|face| face.triangle != first.triangle);
+        let face = Face::at(frame, hit, first.time).filter(|face| face.triangle != first.triangle);
         face.filter(|face| face.coincides(first)).map(|face| (*hit, face.layer))
     };
     let mut rest: Vec<(Hit, &Layer)> = others.iter().filter_map(coinciding).collect();
@@ -140,8 +142,8 @@ impl Sample<'_> {
     /// What a path that has met a layer crosses there.
     pub(super) fn crossing(&mut self, branch: &Branch, hit: &SurfaceHit) -> Option<Crossing> {
         let point = hit.point.position.as_dvec3();
-        let face = Face::new(self.frame, hit.triangle, hit.from_front, point)?;
-        let ray = Ray::new(branch.origin, branch.direction);
+        let face = Face::new(self.frame, hit.triangle, hit.from_front, point, self.time)?;
+        let ray = self.ray(branch.origin, branch.direction);
         let ray = Ray { t_max: hit.t + face.reach(&ray, hit.t), ..ray };
         self.scratch.list_hits(self.frame, &ray, branch.leaves);
         Some(cross(self.frame, &face, &self.scratch.crossings, branch.insides))
@@ -156,11 +158,12 @@ impl Sample<'_> {
         }
         if crossing.is_hidden() {
             branch.insides = crossing.beyond;
-            branch.go_straight_on(hit);
+            branch.go_on(hit, branch.direction);
             return Fate::GoesOn;
         }
         let geometry = &self.frame.geometry;
-        let hit = crossing.stronger.map_or(*hit, |face| geometry.surface_hit(&face, branch.direction));
+        let hit =
+            crossing.stronger.map_or(*hit, |face| geometry.surface_hit(&face, branch.direction, self.time));
         let pair = crossing.pair(self.frame, hit.from_front);
         branch.insides = crossing.before;
         let fate = match pair.matched {
@@ -180,7 +183,7 @@ impl Sample<'_> {
         let hits = &self.scratch.crossings;
         let is_met = |hit: &&Hit| self.frame.is_boundary_of(branch.medium, branch.insides, hit);
         let is_by_rounding = |hit: &Hit| {
-            let face = Face::at(self.frame, hit);
+            let face = Face::at(self.frame, hit, self.time);
             face.is_some_and(|face| face.holds(ray.origin)) || self.is_met_by_rounding(ray, hit.t, hit)
         };
         let at = hits.iter().position(|hit| is_met(&hit) || !is_by_rounding(hit))?;
@@ -255,7 +258,7 @@ impl<'s> Way<'s> {
         let (frame, hits) = (self.sample.frame, &self.sample.scratch.crossings);
         while let Some(hit) = hits.get(self.next) {
             self.next += 1;
-            let Some(face) = Face::at(frame, hit) else {
+            let Some(face) = Face::at(frame, hit, self.sample.time) else {
                 let pair = frame.surface(hit.triangle).pair().copied();
                 return Some(Seen { hit: *hit, pair, beyond: self.insides });
             };
@@ -281,14 +284,5 @@ impl<'s> Way<'s> {
         face.holds(self.ray.origin)
             || self.last.as_ref().is_some_and(|last| last.coincides(face))
             || self.sample.is_met_by_rounding(self.ray, hit.t, hit)
-    }
-}
-
-impl Branch {
-    /// Goes on through a hidden triangle, as if it were not there.
-    fn go_straight_on(&mut self, hit: &SurfaceHit) {
-        let outward = self.outward;
-        self.go_on(hit, self.direction);
-        self.outward = outward;
     }
 }

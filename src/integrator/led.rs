@@ -42,7 +42,7 @@ impl Sample<'_> {
         let medium = self.scratch.media[branch.medium.0 as usize];
         let flight = std::mem::replace(&mut self.scratch.around.flight, LedFlight::NONE);
         let distance = flight.distance(u);
-        let ray = Ray::new(branch.origin, branch.direction);
+        let ray = self.ray(branch.origin, branch.direction);
         let point = ray.at(distance);
         if self.scratch.around.clearing.holds(point) {
             self.scratch.counters.untraced += 1;
@@ -53,7 +53,8 @@ impl Sample<'_> {
                 self.scratch.around.clearing = Clearing::NONE;
                 return Event::Surface(hit);
             }
-            self.scratch.around.clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel);
+            let clearing = &mut self.scratch.around.clearing;
+            clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
         }
         branch.throughput *= flight.scatter_weight(&medium, distance);
         Event::Particle(distance)

@@ -31,6 +31,7 @@ pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
 
 use crate::accel::Hit;
+use crate::geometry::Ray;
 use crate::optics::dwivedi::Dwivedi;
 use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
@@ -58,6 +59,8 @@ pub struct FirstHit {
     pub normal: Vec3,
     /// Colour of the surface; white for interfaces and lights.
     pub albedo: Lanes,
+    /// What the point moves by in a frame, in metres.
+    pub motion: Vec3,
 }
 
 /// What a worker keeps between the samples of one frame by one integrator: no allocation in the inner loop.
@@ -131,23 +134,22 @@ impl Integrator {
         }
     }
 
-    /// The radiance through the point (x, y) of the picture, in pixels from the upper left corner.
+    /// The radiance along an eye ray.
     ///
     /// `photons` are those of the pass; without them photon mapping finds what path tracing does.
     pub fn sample(
         &self,
         frame: &Frame,
         scratch: &mut Scratch,
-        point: [f32; 2],
+        eye: &Ray,
         wavelengths: &Wavelengths,
         stream: SampleStream,
         photons: Option<&PhotonPass>,
     ) -> EyeSample {
-        let ray = frame.camera.ray(point[0], point[1]);
         match self {
-            Self::Path(tracer) => tracer.trace(frame, scratch, &ray, wavelengths, stream, None),
-            Self::Photon(mapper) => mapper.path.trace(frame, scratch, &ray, wavelengths, stream, photons),
-            Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, &ray, stream),
+            Self::Path(tracer) => tracer.trace(frame, scratch, eye, wavelengths, stream, None),
+            Self::Photon(mapper) => mapper.path.trace(frame, scratch, eye, wavelengths, stream, photons),
+            Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, eye, stream),
         }
     }
 

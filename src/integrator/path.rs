@@ -136,6 +136,10 @@ pub(super) struct Sample<'a> {
     pub(super) frame: &'a Frame,
     pub(super) scratch: &'a mut Scratch,
     pub(super) wavelengths: &'a Wavelengths,
+    /// Where the eye ray, or the photon, begins.
+    pub(super) eye: Vec3,
+    /// When the whole path happens, in frames since the shutter opened.
+    pub(super) time: f32,
     /// Interactions along a path at most.
     pub(super) max_depth: u32,
     /// The photons of the pass, where there are any.
@@ -156,9 +160,10 @@ impl PathTracer {
         photons: Option<&PhotonPass>,
     ) -> EyeSample {
         scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
+        let start = frame.start_of(ray);
         scratch.branches.push(Branch {
-            medium: frame.camera_medium,
-            insides: frame.camera_insides,
+            medium: start.medium,
+            insides: start.insides,
             throughput: frame.mode.white(),
             splits_left: self.split,
             forced_left: self.forced,
@@ -167,8 +172,17 @@ impl PathTracer {
             ..Branch::new(ray.origin, ray.direction, stream)
         });
         let max_depth = self.interactions();
-        let mut sample =
-            Sample { frame, scratch, wavelengths, max_depth, photons, radiance: Lanes::ZERO, first: None };
+        let mut sample = Sample {
+            frame,
+            scratch,
+            wavelengths,
+            eye: ray.origin,
+            time: ray.time,
+            max_depth,
+            photons,
+            radiance: Lanes::ZERO,
+            first: None,
+        };
         // Light transport is compiled five times over what the scene needs in its inner loop.
         let varied = frame.needs.heterogeneous || !sample.scratch.sources.is_empty() || photons.is_some();
         if !varied {
@@ -204,6 +218,12 @@ impl PathTracer {
 }
 
 impl Sample<'_> {
+    /// A ray at the time of the path.
+    #[inline]
+    pub(super) fn ray(&self, origin: Vec3, direction: Vec3) -> Ray {
+        Ray::new(origin, direction).at_time(self.time)
+    }
+
     /// Follows a branch to its next event and through it.
     ///
     /// `VARIED` is for media of varying density and for those that add light.
@@ -236,7 +256,7 @@ impl Sample<'_> {
         };
         match event {
             Event::Surface(hit) => {
-                let hit = self.frame.geometry.surface_hit(&hit, branch.direction);
+                let hit = self.frame.geometry.surface_hit(&hit, branch.direction, self.time);
                 self.meet::<DIRECT>(branch, &hit, u)
             }
             Event::Particle(distance) => self.scatter::<DIRECT>(branch, distance, u),
@@ -263,10 +283,11 @@ impl Sample<'_> {
         let point = branch.origin + branch.direction * distance;
         if branch.interactions == 0 && self.first.is_none() {
             self.first = Some(FirstHit {
-                distance: (point - self.frame.camera.eye()).length(),
+                distance: (point - self.eye).length(),
                 position: point,
                 normal: -branch.direction,
                 albedo: Lanes::ONE,
+                motion: Vec3::ZERO,
             });
         }
         let phase = &self.frame.medium(branch.medium).phase;
@@ -346,8 +367,10 @@ impl Sample<'_> {
     pub(super) fn remember_first(&mut self, branch: &Branch, hit: &SurfaceHit, albedo: Lanes) {
         if branch.interactions == 0 && self.first.is_none() {
             // Index-matched boundaries before it have moved the origin along the eye ray.
-            let distance = (hit.point.position - self.frame.camera.eye()).length();
-            self.first = Some(FirstHit { distance, position: hit.point.position, normal: hit.ns, albedo });
+            let position = hit.point.position;
+            let distance = (position - self.eye).length();
+            let motion = self.frame.geometry.motion(hit.triangle, position, self.time);
+            self.first = Some(FirstHit { distance, position, normal: hit.ns, albedo, motion });
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{Interface, RawMesh};
 
 /// The same surface with its vertices in the order of their positions and its triangles, each begun at its least
-/// vertex, in the order of these. Unused vertices and normals are left out.
+/// vertex, in the order of these. Unused vertices, normals and velocities are left out.
 ///
 /// Two files of one surface have the same canonical mesh unless vertices coincide; weld such meshes first.
 pub fn canonical(mesh: &RawMesh) -> RawMesh {
@@ -32,6 +32,7 @@ pub fn canonical(mesh: &RawMesh) -> RawMesh {
         triangles: faces.iter().map(|face| face.0).collect(),
         interfaces: mesh.interfaces.as_ref().map(|_| faces.iter().filter_map(|face| face.1).collect()),
         normals: None,
+        velocities: None,
     }
 }
 
@@ -64,6 +65,7 @@ mod tests {
                 (0..n as i32).map(|t| Interface { front: Region(t), back: Region(t + 1) }).collect(),
             ),
             normals: None,
+            velocities: None,
         }
     }
 

@@ -120,6 +120,7 @@ mod tests {
             triangles: vec![[0, 1, 2], second, [0, 1, 6]],
             interfaces: Some(vec![interface(labels[0]), interface(labels[1]), interface((8, 9))]),
             normals: None,
+            velocities: None,
         }
     }
 

@@ -17,16 +17,20 @@ pub(crate) mod disjoint;
 mod dsc;
 mod edges;
 mod error;
+mod follow;
 mod limits;
 mod obj;
 mod ply;
 mod prepare;
 mod read;
+mod velocity;
 mod weld;
 
 pub use error::{MeshError, Place};
+pub use follow::{NotFollowed, follow};
 pub use prepare::{MeshWarning, prepare};
-pub use read::{FORMATS, Format, Syntax, read, read_bytes};
+pub use read::{FORMATS, Format, Syntax, read, read_bytes, read_with};
+pub use velocity::{VelocityName, VelocityProperty};
 pub use weld::weld;
 
 use glam::{DVec3, Vec3};
@@ -62,6 +66,9 @@ pub struct RawMesh {
     pub interfaces: Option<Vec<Interface>>,
     /// Normals that the file gives, if any; not to be trusted before they are compared with the faces.
     pub normals: Option<CornerNormals>,
+    /// One velocity a vertex, in the file's units per second; `None` when the file has none or nobody asked for them.
+    /// They may not be finite before [`prepare()`].
+    pub velocities: Option<Vec<Vec3>>,
 }
 
 /// Normals and which of them belongs to each corner of each triangle.

@@ -199,7 +199,7 @@ mod tests {
     }
 
     fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>, interfaces: Vec<Interface>) -> RawMesh {
-        RawMesh { positions, triangles, interfaces: Some(interfaces), normals: None }
+        RawMesh { positions, triangles, interfaces: Some(interfaces), normals: None, velocities: None }
     }
 
     fn keys(mesh: &RawMesh) -> Vec<u32> {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::coincident::merge_coincident;
 use super::error::{Fault, MeshError, Place};
@@ -57,6 +57,13 @@ pub enum MeshWarning {
         /// The ends of the first.
         first: [DVec3; 2],
     },
+    /// Velocities that are not finite were set to zero.
+    Velocities {
+        /// How many.
+        not_finite: usize,
+        /// Of how many.
+        all: usize,
+    },
 }
 
 impl fmt::Display for MeshWarning {
@@ -88,6 +95,12 @@ impl fmt::Display for MeshWarning {
             Self::InsideOut => {
                 write!(f, "the normals of the closed surface point inwards; its sides were swapped")
             }
+            Self::Velocities { not_finite, all } => {
+                write!(
+                    f,
+                    "{not_finite} of {all} velocities are not finite; these vertices are taken to be still"
+                )
+            }
             Self::Inconsistent { edges, first: [a, b] } => {
                 write!(
                     f,
@@ -111,7 +124,7 @@ pub fn prepare(
 ) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
     mesh.check().map_err(|fault| fault.in_file(path))?;
     let labelled = mesh.interfaces.is_some();
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(still_the_not_finite(&mut mesh));
     let repeats = mesh.retain(|_, [a, b, c]| a != b && b != c && c != a);
     let mut report = topology(&mesh);
     let mut dropped = repeats;
@@ -138,6 +151,10 @@ pub fn prepare(
     }
     let coincident = merge_coincident(&mut mesh, labelled);
     warnings.extend((coincident > 0).then_some(MeshWarning::Coincident { dropped: coincident }));
+    if coincident > 0 && mesh.velocities.is_some() {
+        // The sheets that are left must go on meeting where they move.
+        weld(&mut mesh);
+    }
     // Only now: what has no area still joins its neighbours.
     dropped += mesh.retain(|mesh, triangle| !mesh.has_no_area(triangle));
     warnings.extend((dropped > 0).then_some(MeshWarning::Degenerate { dropped }));
@@ -168,6 +185,24 @@ fn signed_volume(mesh: &RawMesh) -> f64 {
     mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum()
 }
 
+/// Sets velocities that are not finite to zero.
+fn still_the_not_finite(mesh: &mut RawMesh) -> Option<MeshWarning> {
+    let velocities = mesh.velocities.as_mut()?;
+    let all = velocities.len();
+    let mut not_finite = 0;
+    for velocity in velocities.iter_mut().filter(|velocity| !velocity.is_finite()) {
+        *velocity = Vec3::ZERO;
+        not_finite += 1;
+    }
+    (not_finite > 0).then_some(MeshWarning::Velocities { not_finite, all })
+}
+
+/// Keeps the items that are marked.
+pub(super) fn retain_marked<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut marks = kept.iter();
+    items.retain(|_| marks.next().copied().unwrap_or(true));
+}
+
 impl RawMesh {
     /// Whether a triangle has exactly no area in double precision.
     pub(super) fn has_no_area(&self, triangle: [u32; 3]) -> bool {
@@ -177,16 +212,12 @@ impl RawMesh {
 
     /// Keeps the triangles that are marked, with their labels and normals.
     pub(super) fn retain_triangles(&mut self, kept: &[bool]) {
-        fn retain<T>(items: &mut Vec<T>, kept: &[bool]) {
-            let mut marks = kept.iter();
-            items.retain(|_| marks.next().copied().unwrap_or(true));
-        }
-        retain(&mut self.triangles, kept);
+        retain_marked(&mut self.triangles, kept);
         if let Some(interfaces) = &mut self.interfaces {
-            retain(interfaces, kept);
+            retain_marked(interfaces, kept);
         }
         if let Some(corners) = self.normals.as_mut().and_then(|normals| normals.corners.as_mut()) {
-            retain(corners, kept);
+            retain_marked(corners, kept);
         }
     }
 
@@ -216,6 +247,9 @@ impl RawMesh {
             "a triangle uses a vertex that does not exist"
         } else if self.interfaces.as_ref().is_some_and(|interfaces| interfaces.len() != triangles) {
             "there is not one pair of labels for each triangle"
+        } else if self.velocities.as_ref().is_some_and(|velocities| velocities.len() != self.positions.len())
+        {
+            "there is not one velocity for each vertex"
         } else if !normals_fit {
             "the normals do not fit the vertices or triangles"
         } else {

@@ -8,7 +8,7 @@ use flate2::read::MultiGzDecoder;
 
 use super::error::{Fault, MeshError, Place};
 use super::limits::decompressed_limit;
-use super::{RawMesh, dsc, obj, ply};
+use super::{RawMesh, VelocityName, dsc, obj, ply};
 
 /// How a mesh is written down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,11 +60,19 @@ impl Format {
     }
 }
 
-/// Reads a mesh from a file; its name tells the format.
+/// Reads a mesh from a file, without velocities; its name tells the format.
 ///
 /// # Errors
 /// [`MeshError`] when the file cannot be read, its name promises no known format, or its contents are wrong.
 pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
+    read_with(path, &VelocityName::Nothing)
+}
+
+/// Reads a mesh from a file with velocities, where it has them.
+///
+/// # Errors
+/// Those of [`read()`].
+pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
     let format = Format::of(path).ok_or_else(|| {
         Fault::unsupported(
             Place::File,
@@ -74,25 +82,30 @@ pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
         .in_file(path)
     })?;
     let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
-    read_bytes(&bytes, format, path)
+    read_bytes(&bytes, format, velocity, path)
 }
 
 /// Reads a mesh from the contents of a file; `path` is only named in messages.
 ///
 /// # Errors
 /// [`MeshError`] when the contents are wrong.
-pub fn read_bytes(bytes: &[u8], format: Format, path: &Path) -> Result<RawMesh, MeshError> {
+pub fn read_bytes(
+    bytes: &[u8],
+    format: Format,
+    velocity: &VelocityName,
+    path: &Path,
+) -> Result<RawMesh, MeshError> {
     let mesh = if format.gzip {
-        decompress(bytes).and_then(|inside| read_syntax(&inside, format.syntax))
+        decompress(bytes).and_then(|inside| read_syntax(&inside, format.syntax, velocity))
     } else {
-        read_syntax(bytes, format.syntax)
+        read_syntax(bytes, format.syntax, velocity)
     };
     mesh.map_err(|fault| fault.in_file(path))
 }
 
-fn read_syntax(bytes: &[u8], syntax: Syntax) -> Result<RawMesh, Fault> {
+fn read_syntax(bytes: &[u8], syntax: Syntax, velocity: &VelocityName) -> Result<RawMesh, Fault> {
     match syntax {
-        Syntax::Ply => ply::read(bytes),
+        Syntax::Ply => ply::read(bytes, velocity),
         Syntax::Obj => obj::read(bytes),
         Syntax::Dsc => dsc::read(bytes),
     }

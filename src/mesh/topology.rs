@@ -200,6 +200,7 @@ mod tests {
                 interface(0, 2),
             ]),
             normals: None,
+            velocities: None,
         }
     }
 

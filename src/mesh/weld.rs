@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
+use super::prepare::retain_marked;
 use super::{CornerNormals, RawMesh};
 
 /// Joins all vertices whose positions have the same bits (0 and -0 count as the same), keeping the order of
-/// their first occurrence. Normals that vertices carried stay with the corners.
+/// their first occurrence. Normals that vertices carried stay with the corners; the first one's velocity is that of all.
 pub fn weld(mesh: &mut RawMesh) {
     let new_index = merged_indices(&mesh.positions);
     if new_index.iter().enumerate().all(|(old, &new)| old == new as usize) {
@@ -16,12 +17,18 @@ pub fn weld(mesh: &mut RawMesh) {
     }
     // The first occurrence of each new index comes in the order of these.
     let mut next = 0;
-    let mut is_first = new_index.iter().map(|&new| {
-        let first = new == next;
-        next += u32::from(first);
-        first
-    });
-    mesh.positions.retain(|_| is_first.next().unwrap_or(true));
+    let is_first: Vec<bool> = new_index
+        .iter()
+        .map(|&new| {
+            let first = new == next;
+            next += u32::from(first);
+            first
+        })
+        .collect();
+    retain_marked(&mut mesh.positions, &is_first);
+    if let Some(velocities) = &mut mesh.velocities {
+        retain_marked(velocities, &is_first);
+    }
     for index in mesh.triangles.iter_mut().flatten() {
         *index = new_index[*index as usize];
     }
@@ -75,9 +82,11 @@ mod tests {
         let mut mesh = soup(&[o, x, y, x, x + y, DVec3::new(-0.0, 1.0, 0.0)]);
         let values: Vec<Vec3> = (0..6).map(|k| Vec3::splat(k as f32)).collect();
         mesh.normals = Some(CornerNormals { values: values.clone(), corners: None });
+        mesh.velocities = Some(values.clone());
         weld(&mut mesh);
         assert_eq!(mesh.positions, [o, x, y, x + y]);
         assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+        assert_eq!(mesh.velocities, Some(vec![values[0], values[1], values[2], values[4]]));
         let corners = Some(vec![[0, 1, 2], [3, 4, 5]]);
         assert_eq!(mesh.normals, Some(CornerNormals { values, corners }));
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::beneath::Asked;
+use super::camera_path::Views;
 use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, place_of};
@@ -18,7 +19,7 @@ use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
 use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
-use crate::mesh::{self, Interface, RawMesh, Region, normals};
+use crate::mesh::{self, Interface, RawMesh, Region, VelocityName, normals};
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::{FrameNumber, frame_path, has_place};
 use crate::spectrum::{Role, Spectrum, Wavelengths};
@@ -99,10 +100,11 @@ impl World {
         }
         for surface in self.description.surfaces.iter().filter(|s| has_place(&s.mesh)) {
             let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
-            assembly.parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
+            let raw = mesh::read_with(&path, &self.velocity_name())?;
+            assembly.parts.add_surface(self, surface, raw, &path)?;
         }
         let layers = assembly.settle_bodies()?;
-        Ok(assembly.finish(self.media_at(number)?, layers, accel, previous))
+        Ok(assembly.finish(number, self.media_at(number)?, layers, accel, previous))
     }
 }
 
@@ -132,6 +134,11 @@ impl<'a> Assembly<'a> {
     fn add_frame(&mut self, mesh: RawMesh, path: &Path) -> Result<(), FrameError> {
         let Some(frames) = self.world.frames() else { return Ok(()) };
         self.labelled = mesh.interfaces.is_some();
+        let is_asked = self.world.velocity_name() != VelocityName::Nothing;
+        if is_asked && mesh.velocities.is_none() {
+            self.parts
+                .warn(path, ["the file has no velocities: nothing in it moves while the shutter is open"]);
+        }
         let (mut mesh, warnings) = mesh::prepare(mesh, frames.inside, path)?;
         self.parts.warn(path, warnings);
         self.count_interfaces(&mesh);
@@ -155,7 +162,15 @@ impl<'a> Assembly<'a> {
             &walls.iter().map(|w| w.wall()).collect::<Vec<_>>(),
         );
         let (scale, origin) = (frames.scale, self.world.origin);
-        let placed = Placed { mesh: &mesh, path, normals: frames.normals, group: &group, ids: &ids };
+        let placed = Placed {
+            mesh: &mesh,
+            path,
+            normals: frames.normals,
+            group: &group,
+            ids: &ids,
+            scale,
+            pace: self.world.pace(),
+        };
         self.parts.append(&placed, |p| p * scale - origin)
     }
 
@@ -224,13 +239,16 @@ impl<'a> Assembly<'a> {
     }
 
     fn finish(
-        self,
+        mut self,
+        number: FrameNumber,
         mut media: Vec<Medium>,
         layers: Layers,
         accel: Accel,
         previous: Option<&Frame>,
     ) -> Assembled {
         let world = self.world;
+        let shutter = world.description.camera.shutter;
+        self.parts.geometry.settle_motions();
         let reduced = self.reduce(&mut media);
         let led = self.led(&media);
         let lights = Lights {
@@ -239,12 +257,17 @@ impl<'a> Assembly<'a> {
             area: self.area_lights(),
         };
         let still = world.still.geometry.triangles.len();
-        let (accel, update) = hierarchy(&self.parts.geometry, still, accel, previous);
+        let (mut accel, update) = hierarchy(&self.parts.geometry, still, accel, previous);
+        if shutter > 0.0 && !self.parts.geometry.motions.is_empty() {
+            accel.set_in_motion(&self.parts.geometry.motions, &self.parts.geometry.triangles, shutter);
+        }
         let Parts { geometry, surfaces, .. } = &self.parts;
         let surface = |triangle: u32| &surfaces[geometry.surfaces[triangle as usize].0 as usize];
-        let place_of = |point| place_of(point, &accel, surface, &layers);
-        let camera = place_of(world.camera.eye());
-        let lit = self.lit(|point| place_of(point).medium);
+        let views = Views::new(&world.camera, number, shutter, world.tells_motion());
+        let place_of = |point, time| place_of(point, time, &accel, surface, &layers);
+        let camera = place_of(views.opening.eye(), 0.0);
+        let starts = views.start_places(camera, accel.is_in_motion(), place_of);
+        let lit = self.lit(|point| place_of(point, 0.0).medium);
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -261,15 +284,16 @@ impl<'a> Assembly<'a> {
             layers: !layers.is_empty(),
             // Layers may be hidden, which rays pass straight through.
             matched_interfaces: needs.matched_interfaces || !layers.is_empty(),
+            motion: accel.is_in_motion(),
+            lens: world.description.camera.aperture > 0.0,
             ..needs
         };
         Assembled {
             frame: Frame {
                 mode: world.mode,
                 origin: world.origin,
-                camera: world.camera.clone(),
-                camera_medium: camera.medium,
-                camera_insides: camera.insides,
+                views,
+                starts,
                 media,
                 endless: self.endless,
                 lit,
@@ -348,6 +372,8 @@ impl<'a> Assembly<'a> {
             peaked_sky: lights.environment.is_peaked(),
             layers: false,
             similarity: false,
+            motion: false,
+            lens: false,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }

@@ -1,6 +1,7 @@
 //! Sends samples of the lights through the interfaces, to learn where light comes from beneath them.
 
 use super::parts::Parts;
+use super::surface::Surface;
 use crate::accel::{Accel, Ignored};
 use crate::geometry::Ray;
 use crate::light::beneath::{Beneath, BeneathCells};
@@ -84,7 +85,7 @@ impl Asked<'_> {
         let mut add = |light: &LightSample| {
             let cos = light.wi.dot(normal);
             let ignored = Ignored([window.triangle, light.triangle.unwrap_or(u32::MAX)]);
-            let way = Ray { origin: point, direction: light.wi, t_max: light.distance };
+            let way = Ray { t_max: light.distance, ..Ray::new(point, light.wi) };
             let Some(direction) = refract(light.wi, normal, eta_t_over_i) else { return };
             if cos > 0.0 && light.pdf_w > 0.0 && !self.accel.occluded(&way, ignored) {
                 let passed = 1.0 - fresnel::dielectric(cos, eta_t_over_i).reflectance;

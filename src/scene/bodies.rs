@@ -56,11 +56,22 @@ impl Parts {
         let first = self.geometry.triangles.len();
         let (faces, ids) = self.add_faces(world, described, &interfaces, path)?;
         let group = normals::group_keys(prepared.triangles.len(), &interfaces, &[]);
-        let placed = Placed { mesh: &prepared, path, normals: described.normals, group: &group, ids: &ids };
         let (scale, translate, origin) = (described.scale, described.translate, world.origin);
+        let placed = Placed {
+            mesh: &prepared,
+            path,
+            normals: described.normals,
+            group: &group,
+            ids: &ids,
+            scale,
+            pace: world.pace(),
+        };
         self.append(&placed, |p| p * scale + translate - origin)?;
         let own = first as u32..self.geometry.triangles.len() as u32;
-        let bounds = Bounds::of_points(own.flat_map(|triangle| self.geometry.vertices(triangle)));
+        // From where it is when the shutter opens to where it is when that closes.
+        let moments = [0.0, world.description.camera.shutter];
+        let corners = |triangle| moments.map(|time| self.geometry.vertices_at(triangle, time)).concat();
+        let bounds = Bounds::of_points(own.flat_map(corners));
         // Faces on each other touch, though rounding may have parted them.
         let bounds = bounds.grown(COINCIDENT * bounds.min.abs().max(bounds.max.abs()).max_element());
         self.bodies.push(Body { mesh, labelled, faces, bounds });

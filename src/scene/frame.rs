@@ -1,6 +1,6 @@
 //! One frame as rays see it.
 
-use super::camera::Camera;
+use super::camera_path::{StartPlaces, Views};
 use super::geometry::Geometry;
 use super::layers::{Insides, Layers};
 use super::needs::Needs;
@@ -20,12 +20,10 @@ pub struct Frame {
     pub mode: LaneMode,
     /// The point that coordinates are relative to, in metres.
     pub origin: DVec3,
-    /// The camera.
-    pub camera: Camera,
+    /// What the camera sees while the shutter is open.
+    pub views: Views,
     /// Where the camera is.
-    pub camera_medium: MediumId,
-    /// Which of the meshes that overlap it is in.
-    pub camera_insides: Insides,
+    pub starts: StartPlaces,
     /// Media by [`MediumId`].
     pub media: Vec<Medium>,
     /// Media in which a ray that meets nothing ends in the dark: the extended sea.
@@ -81,9 +79,17 @@ impl Frame {
         }
     }
 
-    /// Where a point is ([`place_of`]).
-    pub fn place_of(&self, point: Vec3) -> Place {
-        place_of(point, &self.accel, |triangle| self.surface(triangle), &self.layers)
+    /// Where a point is at a time ([`place_of`]).
+    pub fn place_of(&self, point: Vec3, time: f32) -> Place {
+        place_of(point, time, &self.accel, |triangle| self.surface(triangle), &self.layers)
+    }
+
+    /// Where an eye ray begins.
+    pub fn start_of(&self, eye: &Ray) -> Place {
+        match self.starts {
+            StartPlaces::One(place) => place,
+            StartPlaces::Several => self.place_of(eye.origin, eye.time),
+        }
     }
 
     /// The boundary between a medium and the one beyond it, seen from the front of its triangle or not.
@@ -114,17 +120,19 @@ impl Place {
 }
 
 /// Where a point is: on the near side of the nearest interface seen from there, looking through opaque surfaces, and
-/// so for each mesh that overlaps others; outside of those of which nothing is seen.
+/// so for each mesh that overlaps others; outside of those of which nothing is seen. `time` is in frames.
 pub fn place_of<'s>(
     point: Vec3,
+    time: f32,
     accel: &Accel,
     surface: impl Fn(u32) -> &'s Surface,
     layers: &Layers,
 ) -> Place {
     if !layers.is_empty() {
-        return place_among_layers(point, accel, surface, layers);
+        return place_among_layers(point, time, accel, surface, layers);
     }
-    let seen = directions().filter_map(|direction| nearest_interface(point, direction, accel, &surface));
+    let seen = directions()
+        .filter_map(|direction| nearest_interface(Ray::new(point, direction).at_time(time), accel, &surface));
     let medium = seen.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(MediumId(0), |(_, medium)| medium);
     Place { medium, ..Place::OPEN_AIR }
 }
@@ -141,12 +149,10 @@ fn directions() -> impl Iterator<Item = Vec3> {
 
 /// Distance and near medium of the first interface along a ray.
 fn nearest_interface<'s>(
-    point: Vec3,
-    direction: Vec3,
+    mut ray: Ray,
     accel: &Accel,
     surface: &impl Fn(u32) -> &'s Surface,
 ) -> Option<(f32, MediumId)> {
-    let mut ray = Ray::new(point, direction);
     let mut ignored = Ignored::NOTHING;
     let mut travelled = 0.0;
     // More opaque sheets than this in a row do not occur outside of contrived scenes.
@@ -165,6 +171,7 @@ fn nearest_interface<'s>(
 /// Every triangle along the rays is asked for: faces that lie on each other must not hide one another.
 fn place_among_layers<'s>(
     point: Vec3,
+    time: f32,
     accel: &Accel,
     surface: impl Fn(u32) -> &'s Surface,
     layers: &Layers,
@@ -173,7 +180,7 @@ fn place_among_layers<'s>(
     // By all regions of a mesh, how far its nearest face is and which of them is on this side of it.
     let mut nearest: BTreeMap<Insides, (f32, Insides)> = BTreeMap::new();
     for direction in directions() {
-        accel.each_hit(&Ray::new(point, direction), Ignored::NOTHING, |hit| {
+        accel.each_hit(&Ray::new(point, direction).at_time(time), Ignored::NOTHING, |hit| {
             match surface(hit.triangle) {
                 Surface::Interface(pair) if hit.t < interface.0 => {
                     interface = (hit.t, pair.crossed(hit.from_front).0);

@@ -20,6 +20,10 @@ pub struct Geometry {
     pub normals: Vec<Vec3>,
     /// Three indices into `normals` a triangle, or [`Geometry::FLAT`].
     pub corners: Vec<[u32; 3]>,
+    /// What vertices move by in a frame, in metres; empty where nothing moves.
+    pub motions: Vec<Vec3>,
+    /// What shading normals change by in a frame; empty where none does.
+    pub normal_changes: Vec<Vec3>,
 }
 
 /// Where and how a ray meets a surface.
@@ -45,49 +49,92 @@ impl Geometry {
 
     /// Becomes a copy of another geometry in the memory that this one has.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { positions, triangles, surfaces, normals, corners } = other;
+        let Self { positions, triangles, surfaces, normals, corners, motions, normal_changes } = other;
         self.positions.clone_from(positions);
         self.triangles.clone_from(triangles);
         self.surfaces.clone_from(surfaces);
         self.normals.clone_from(normals);
         self.corners.clone_from(corners);
+        self.motions.clone_from(motions);
+        self.normal_changes.clone_from(normal_changes);
     }
 
-    /// The three vertices of a triangle.
+    /// The three vertices of a triangle when the shutter opens.
     #[inline]
     pub fn vertices(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
+    /// The three vertices of a triangle at a time in frames: rounded as the hierarchy does it, so that both have the same.
+    #[inline]
+    pub fn vertices_at(&self, triangle: u32, time: f32) -> [Vec3; 3] {
+        if self.motions.is_empty() {
+            return self.vertices(triangle);
+        }
+        self.triangles[triangle as usize]
+            .map(|i| self.positions[i as usize] + self.motions[i as usize] * time)
+    }
+
+    /// What a point of a triangle moves by in a frame, in metres.
+    pub fn motion(&self, triangle: u32, point: Vec3, time: f32) -> Vec3 {
+        if self.motions.is_empty() {
+            return Vec3::ZERO;
+        }
+        let v = self.vertices_at(triangle, time);
+        let normal = unit_normal(&v);
+        let part = |a: Vec3, b: Vec3| (a - point).cross(b - point).dot(normal);
+        let weights = Vec3::new(part(v[1], v[2]), part(v[2], v[0]), part(v[0], v[1]));
+        let [a, b, c] = self.triangles[triangle as usize].map(|i| self.motions[i as usize]);
+        let mixed = (a * weights.x + b * weights.y + c * weights.z) / weights.element_sum();
+        if mixed.is_finite() { mixed } else { (a + b + c) / 3.0 }
+    }
+
+    /// Leaves no vertex without a motion where some have one, and none where all stand still.
+    pub(super) fn settle_motions(&mut self) {
+        if self.motions.iter().all(|motion| *motion == Vec3::ZERO) {
+            self.motions.clear();
+            self.normal_changes.clear();
+        } else {
+            self.motions.resize(self.positions.len(), Vec3::ZERO);
+            self.normal_changes.resize(self.normals.len(), Vec3::ZERO);
+        }
+    }
+
     /// How much later than at its own line a ray's parallels meet the plane of a triangle, in metres for each metre beside
     /// the line: t(offset) = t - slope . offset. Its length is the tangent of the angle with the normal.
-    pub fn slope(&self, triangle: u32, direction: Vec3) -> Vec3 {
-        let n = unit_normal(&self.vertices(triangle));
+    pub fn slope(&self, triangle: u32, direction: Vec3, time: f32) -> Vec3 {
+        let n = unit_normal(&self.vertices_at(triangle, time));
         let cos = n.dot(direction);
         let beside = n - cos * direction;
         beside / if cos.abs() < 1e-6 { 1e-6_f32.copysign(cos) } else { cos }
     }
 
     /// The interpolated normal on the side that a hit is seen from, whatever that says of it; `ng`, the triangle's
-    /// normal on that side, without shading normals.
+    /// normal on that side, without shading normals. At a time in frames.
     #[inline]
-    pub fn interpolated_normal(&self, hit: &Hit, ng: Vec3) -> Vec3 {
+    pub fn interpolated_normal(&self, hit: &Hit, ng: Vec3, time: f32) -> Vec3 {
         let corners = self.corners[hit.triangle as usize];
         if corners == Self::FLAT {
             return ng;
         }
         let side = if hit.from_front { 1.0 } else { -1.0 };
-        let [a, b, c] = corners.map(|i| self.normals[i as usize]);
+        let [a, b, c] = corners.map(|i| self.normal(i as usize, time));
         let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
         mixed.normalize_or(ng * side) * side
     }
 
-    /// Point and normals at a hit of a ray with unit `direction`.
-    pub fn surface_hit(&self, hit: &Hit, direction: Vec3) -> SurfaceHit {
-        let v = self.vertices(hit.triangle);
+    #[inline]
+    fn normal(&self, index: usize, time: f32) -> Vec3 {
+        let normal = self.normals[index];
+        if self.normal_changes.is_empty() { normal } else { normal + self.normal_changes[index] * time }
+    }
+
+    /// Point and normals at a hit of a ray with unit `direction`, at a time in frames.
+    pub fn surface_hit(&self, hit: &Hit, direction: Vec3, time: f32) -> SurfaceHit {
+        let v = self.vertices_at(hit.triangle, time);
         let side = if hit.from_front { 1.0 } else { -1.0 };
         let ng = unit_normal(&v) * side;
-        let ns = self.interpolated_normal(hit, ng);
+        let ns = self.interpolated_normal(hit, ng, time);
         let ns = if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng };
         SurfaceHit {
             triangle: hit.triangle,

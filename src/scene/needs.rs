@@ -35,6 +35,10 @@ pub struct Needs {
     pub peaked_sky: bool,
     /// Scattering in thick media was replaced by what is similar from afar: the picture is biased.
     pub similarity: bool,
+    /// Something moves while the shutter is open.
+    pub motion: bool,
+    /// The camera has a lens: what is not in focus is blurred.
+    pub lens: bool,
     /// A sun shines on a refracting interface: its light beyond is left out.
     pub sun_behind_interface: bool,
 }
@@ -115,6 +119,20 @@ impl Needs {
                 } else {
                     "render.similarity is 0, or no medium is thick and scatters forward"
                 },
+            ),
+            line(
+                "motion blur",
+                self.motion,
+                if self.motion {
+                    "vertices have velocities and the shutter opens"
+                } else {
+                    "the shutter stays closed, or no vertex has a velocity"
+                },
+            ),
+            line(
+                "depth of field",
+                self.lens,
+                if self.lens { "the camera has an aperture" } else { "the camera is a pinhole" },
             ),
             line(
                 Self::SUN,

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::bodies::Body;
 use super::description::{MaterialDescription, NormalsDescription, SurfaceDescription};
 use super::error::FrameError;
 use super::geometry::Geometry;
+use super::motion::Pace;
 use super::surface::{MediumPair, Surface, SurfaceId};
 use super::world::World;
-use crate::mesh::{self, RawMesh, Region, normals};
+use crate::mesh::{self, CornerNormals, RawMesh, Region, normals};
 use crate::optics::medium::MediumId;
 use crate::spectrum::Role;
 
@@ -40,6 +41,10 @@ pub(super) struct Placed<'a> {
     pub group: &'a [u32],
     /// What each triangle is; `None` for nothing.
     pub ids: &'a [Option<SurfaceId>],
+    /// Metres a unit.
+    pub scale: f64,
+    /// What becomes of its velocities; `None` when it stands still.
+    pub pace: Option<Pace>,
 }
 
 impl Parts {
@@ -52,7 +57,12 @@ impl Parts {
         path: &Path,
     ) -> Result<(), FrameError> {
         // What a surface is follows from the scene file; labels that its file may carry mean nothing here.
-        let unlabelled = RawMesh { interfaces: None, ..raw };
+        let mut unlabelled = RawMesh { interfaces: None, ..raw };
+        if matches!(surface.material, MaterialDescription::Emitter { .. })
+            && unlabelled.velocities.take().is_some()
+        {
+            self.warn(path, ["lights stand still within a frame: the velocities of the mesh are left out"]);
+        }
         let (mut mesh, warnings) = mesh::prepare(unlabelled, Region(1), path)?;
         if let MaterialDescription::Dielectric { .. } | MaterialDescription::Null { .. } = surface.material {
             self.warn(path, warnings);
@@ -63,7 +73,15 @@ impl Parts {
         let ids = vec![id; mesh.triangles.len()];
         let group = vec![0; mesh.triangles.len()];
         let (scale, translate) = (surface.scale, surface.translate);
-        let placed = Placed { mesh: &mesh, path, normals: surface.normals, group: &group, ids: &ids };
+        let placed = Placed {
+            mesh: &mesh,
+            path,
+            normals: surface.normals,
+            group: &group,
+            ids: &ids,
+            scale,
+            pace: world.pace(),
+        };
         self.append(&placed, |p| p * scale + translate - world.origin)
     }
 
@@ -136,6 +154,7 @@ impl Parts {
         if let Some(shading) = &shading {
             self.geometry.normals.extend_from_slice(&shading.values);
         }
+        self.append_motions(part, [first_vertex, first_normal], shading.as_ref());
         let corners = shading.and_then(|s| s.corners);
         for (i, id) in ids.iter().enumerate() {
             let Some(id) = id else { continue };
@@ -145,6 +164,20 @@ impl Parts {
             self.geometry.corners.push(corners.as_ref().map_or(flat, |c| c[i].map(|n| n + first_normal)));
         }
         Ok(())
+    }
+
+    /// Appends what vertices and normals change by; `first` are the numbers of those before.
+    fn append_motions(&mut self, part: &Placed, first: [u32; 2], shading: Option<&CornerNormals>) {
+        let (Some(pace), Some(velocities)) = (part.pace, &part.mesh.velocities) else { return };
+        let [vertices, normals] = first.map(|count| count as usize);
+        self.geometry.motions.resize(vertices, Vec3::ZERO);
+        self.geometry.motions.extend(velocities.iter().map(|&v| pace.motion(v, part.scale)));
+        if let Some(shading) = shading.filter(|_| part.normals == NormalsDescription::Smooth)
+            && let Some(changes) = pace.normal_changes(part.mesh, part.group, shading)
+        {
+            self.geometry.normal_changes.resize(normals, Vec3::ZERO);
+            self.geometry.normal_changes.extend(changes);
+        }
     }
 
     /// Warnings about a file.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::camera::Camera;
+use super::camera_path::CameraPath;
 use super::density;
 use super::description::{
     AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
@@ -32,8 +32,8 @@ pub struct World {
     pub mode: LaneMode,
     /// The point that coordinates are relative to, in metres; the same for every frame.
     pub origin: DVec3,
-    /// The camera.
-    pub camera: Camera,
+    /// Where the camera is in which frame.
+    pub camera: CameraPath,
     /// Media by [`MediumId`]; the first is that of region 0.
     pub media: Vec<Medium>,
     /// What takes the place of the media's scattering in frames where they are thick, if the scene asks for it.
@@ -54,10 +54,9 @@ impl World {
     /// When a picture of the sky or a mesh that is the same in every frame cannot be read, or has no place here.
     pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
-        let Placement { eye, target } = description.camera.placement.unwrap_or(placement);
-        let origin = snapped(eye);
-        let view = &description.camera;
-        let camera = Camera::new(eye - origin, target - origin, view.up, view.fov, view.resolution);
+        let placement = description.camera.placement.unwrap_or(placement);
+        let origin = snapped(placement.eye);
+        let camera = CameraPath::new(&description.camera, placement, origin);
         let (mut media, names) = media_of(&description, mode);
         for medium in &mut media {
             medium.density = density::still(&description.media[&medium.name].density, &description, origin)?;

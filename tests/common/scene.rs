@@ -52,7 +52,8 @@ impl SceneFolder {
         std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         let job = Job::open(&file).unwrap_or_else(|e| panic!("{e}"));
         let task = job.tasks().swap_remove(0);
-        let assembled = task.read().and_then(|meshes| Ok(job.world.assemble(task.number, meshes, None)?));
+        let meshes = task.read(&job.world.velocity_name());
+        let assembled = meshes.and_then(|meshes| Ok(job.world.assemble(task.number, meshes, None)?));
         assembled.err().unwrap_or_else(|| panic!("this scene was assembled: {toml}"))
     }
 

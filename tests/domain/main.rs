@@ -149,6 +149,7 @@ proptest! {
             triangles: faces.iter().map(|f| f.0.map(|i| i % count)).collect(),
             interfaces: Some(faces.iter().map(|f| interface(f.1, f.2)).collect()),
             normals: Some(CornerNormals { values: vec![Vec3::Z; positions.len()], corners: None }),
+            velocities: Some(vec![Vec3::Z; positions.len()]),
             positions,
         };
         detect_box(&mesh);
@@ -159,6 +160,9 @@ proptest! {
             prop_assert_eq!(mesh.interfaces.as_ref().map(Vec::len), Some(mesh.triangles.len()));
             prop_assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
             prop_assert!(mesh.positions.iter().all(|p| p.is_finite()));
+            let velocities = mesh.velocities.unwrap();
+            prop_assert_eq!(velocities.len(), mesh.positions.len());
+            prop_assert!(velocities.iter().all(|v| v.abs_diff_eq(Vec3::Z * v.z, 0.0) && (0.0..=1.0).contains(&v.z)));
         }
     }
 }

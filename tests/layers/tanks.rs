@@ -144,8 +144,13 @@ fn scenes(into: f64, media: &str, eye: &str) -> [Prepared; 2] {
     let scenes =
         [&exactly(), OVERLAPPING].map(|meshes| folder.scene(&around(media, meshes).replace(EYE, eye)));
     assert_eq!([false, true], [0, 1].map(|i| scenes[i].frame.needs.layers));
-    let [expected, found] =
-        [0, 1].map(|i| scenes[i].frame.medium(scenes[i].frame.camera_medium).name.clone());
+    let [expected, found] = [0, 1].map(|i| {
+        scenes[i]
+            .frame
+            .medium(scenes[i].frame.start_of(&scenes[i].frame.views.opening.ray(0.0, 0.0)).medium)
+            .name
+            .clone()
+    });
     assert_eq!(expected, found, "the medium at {eye}");
     scenes
 }

@@ -86,7 +86,7 @@ fn eye_ways(scene: &Prepared) -> Vec<f64> {
     (0..steps * steps)
         .map(|k| {
             let at = |i: u32| (i as f32 + 0.5) * 16.0 / steps as f32;
-            let direction = scene.frame.camera.ray(at(k % steps), at(k / steps)).direction;
+            let direction = scene.frame.views.opening.ray(at(k % steps), at(k / steps)).direction;
             0.6 / f64::from(-direction.z)
         })
         .collect()

@@ -165,6 +165,7 @@ pub fn cuboid(min: DVec3, max: DVec3) -> RawMesh {
         triangles: quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
         interfaces: None,
         normals: None,
+        velocities: None,
     }
 }
 

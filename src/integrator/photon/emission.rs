@@ -99,7 +99,7 @@ impl Emission {
     pub(super) fn emit(
         &self,
         frame: &Frame,
-        wavelengths: &Wavelengths,
+        (wavelengths, time): (&Wavelengths, f32),
         (index, count): (u32, u32),
         stream: &mut SampleStream,
     ) -> Option<Emitted> {
@@ -111,13 +111,13 @@ impl Emission {
         let mut emitted = match kind {
             Kind::Sun => {
                 let light = frame.lights.sun.as_ref()?.sample([u[0], u[1]], wavelengths);
-                self.start_at_infinity(frame, &light, [u[2], u[3]], wavelengths)
+                self.start_at_infinity(frame, &light, [u[2], u[3]], (wavelengths, time))
             }
             Kind::Sky => {
                 let light = frame.lights.environment.emit([u[0], u[1]], wavelengths)?;
-                self.start_at_infinity(frame, &light, [u[2], u[3]], wavelengths)
+                self.start_at_infinity(frame, &light, [u[2], u[3]], (wavelengths, time))
             }
-            Kind::Area => self.start_on_triangle(frame, u, stream.next4()[0], wavelengths),
+            Kind::Area => self.start_on_triangle(frame, u, stream.next4()[0], (wavelengths, time)),
         }?;
         emitted.flux /= of_kind;
         (emitted.flux.max_element() > 0.0).then_some(emitted)
@@ -128,7 +128,7 @@ impl Emission {
         frame: &Frame,
         light: &LightSample,
         u: [f32; 2],
-        wavelengths: &Wavelengths,
+        (wavelengths, time): (&Wavelengths, f32),
     ) -> Option<Emitted> {
         let basis = Basis::around(light.wi);
         let (offset, pdf_a, near, spread) = if self.scene.radius > FAR * self.seen.radius {
@@ -141,10 +141,10 @@ impl Emission {
             (disc.extend(0.0), 1.0 / (PI * self.scene.radius * self.scene.radius), self.scene, 1.0)
         };
         let mut origin = near.centre + basis.to_world(offset) + light.wi * near.radius;
-        if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
+        if frame.accel.occluded(&Ray::new(origin, light.wi).at_time(time), Ignored::NOTHING) {
             // What is seen does not reach out of the scene there: start beyond all of it, with coarser coordinates.
             origin += light.wi * 2.0 * self.scene.radius;
-            if frame.accel.occluded(&Ray::new(origin, light.wi), Ignored::NOTHING) {
+            if frame.accel.occluded(&Ray::new(origin, light.wi).at_time(time), Ignored::NOTHING) {
                 return None;
             }
         }
@@ -154,15 +154,16 @@ impl Emission {
         let flux = light.radiance * arrives / (light.pdf_w * pdf_a);
         let emitted =
             Emitted { origin, direction: -light.wi, leaves: u32::MAX, place: Place::OPEN_AIR, flux, spread };
-        self.is_in_the_open(frame, &emitted).then_some(emitted)
+        self.is_in_the_open(frame, &emitted, time).then_some(emitted)
     }
 
     /// False for light from below a sea without end, which there is not.
-    fn is_in_the_open(&self, frame: &Frame, emitted: &Emitted) -> bool {
+    fn is_in_the_open(&self, frame: &Frame, emitted: &Emitted, time: f32) -> bool {
         if !frame.endless.contains(&true) {
             return true;
         }
-        let first = frame.accel.closest(&Ray::new(emitted.origin, emitted.direction), Ignored::NOTHING);
+        let ray = Ray::new(emitted.origin, emitted.direction).at_time(time);
+        let first = frame.accel.closest(&ray, Ignored::NOTHING);
         first.is_some_and(|hit| frame.is_boundary_of(MediumId(0), Insides::NONE, &hit))
     }
 
@@ -171,7 +172,7 @@ impl Emission {
         frame: &Frame,
         u: [f32; 4],
         choice: f32,
-        wavelengths: &Wavelengths,
+        (wavelengths, time): (&Wavelengths, f32),
     ) -> Option<Emitted> {
         let point = frame.lights.area.as_ref()?.sample_point([u[0], u[1], choice], wavelengths);
         let towards = self.scene.centre - point.position;
@@ -195,7 +196,7 @@ impl Emission {
             direction,
             leaves: point.triangle,
             place: self.starts[point.entry]
-                .unwrap_or_else(|| place_before(frame, point.position, point.normal)),
+                .unwrap_or_else(|| place_before(frame, point.position, point.normal, time)),
             flux: point.radiance * (cos / (point.pdf_a * pdf_w)),
             spread: 1.0,
         })
@@ -217,7 +218,8 @@ fn scene_ball(frame: &Frame) -> Ball {
     let geometry = &frame.geometry;
     let corners = (0..geometry.triangles.len() as u32)
         .filter(|&id| !matches!(frame.surface(id), Surface::Emitter { .. }))
-        .flat_map(|id| geometry.vertices(id));
+        .flat_map(|id| [0.0, frame.views.shutter].map(|time| geometry.vertices_at(id, time)))
+        .flatten();
     let bounds = Bounds::of_points(corners.clone());
     let centre = bounds.centre();
     let squared = corners.map(|p| p.distance_squared(centre)).fold(0.0, f32::max);
@@ -228,11 +230,11 @@ fn scene_ball(frame: &Frame) -> Ball {
 /// The ball around what the middle of the eye's rays meet: their median point, and twice the median distance from it.
 fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     const RAYS: u32 = 16;
-    let [width, height] = frame.camera.resolution().map(|n| n as f32 / RAYS as f32);
+    let [width, height] = frame.views.opening.resolution().map(|n| n as f32 / RAYS as f32);
     let mut seen: Vec<Vec3> = Vec::new();
     for i in 0..RAYS * RAYS {
         let (x, y) = ((i % RAYS) as f32 + 0.5, (i / RAYS) as f32 + 0.5);
-        let ray = frame.camera.ray(x * width, y * height);
+        let ray = frame.views.opening.ray(x * width, y * height);
         let hit = frame.accel.closest(&ray, Ignored::NOTHING);
         let hit = hit.filter(|hit| !matches!(frame.surface(hit.triangle), Surface::Emitter { .. }));
         seen.extend(hit.map(|hit| ray.at(hit.t)));
@@ -249,22 +251,23 @@ fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     if radius > 0.0 { Ball { centre, radius } } else { scene }
 }
 
-/// What is on the bright side of an emitting triangle, where it is the same at the centroid and near the corners.
+/// What is on the bright side of an emitting triangle, where it is the same at the centroid and near the corners and
+/// nothing moves.
 fn place_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3) -> Option<Place> {
     let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let place = place_before(frame, centroid, normal);
-    let is_same = |corner: &Vec3| place_before(frame, corner.lerp(centroid, 1e-3), normal) == place;
-    corners.iter().all(is_same).then_some(place)
+    let place = place_before(frame, centroid, normal, 0.0);
+    let is_same = |corner: &Vec3| place_before(frame, corner.lerp(centroid, 1e-3), normal, 0.0) == place;
+    (!frame.accel.is_in_motion() && corners.iter().all(is_same)).then_some(place)
 }
 
 /// What is on the bright side of a point on an emitting triangle.
-fn place_before(frame: &Frame, point: Vec3, normal: Vec3) -> Place {
+fn place_before(frame: &Frame, point: Vec3, normal: Vec3, time: f32) -> Place {
     if !frame.needs.specular && !frame.needs.matched_interfaces {
         return Place::OPEN_AIR;
     }
     // A little in front of it, so that an interface that it touches is seen from the bright side.
     let size = point.abs().max_element();
-    frame.place_of(point + normal * (size * 4.0 * f32::EPSILON))
+    frame.place_of(point + normal * (size * 4.0 * f32::EPSILON), time)
 }
 
 #[cfg(test)]

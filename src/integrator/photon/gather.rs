@@ -69,7 +69,7 @@ impl Sample<'_> {
         let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
         // At a hidden triangle the ray that goes on takes what this one does not.
         let ends = [start, end].map(|end| end.filter(|&triangle| !self.is_hidden(branch, triangle)));
-        let slopes = ends.map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction)));
+        let slopes = ends.map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction, ray.time)));
         let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length).min(STEEPEST));
         let before = slopes[0].unwrap_or(Vec3::ZERO);
         let mut sum = Lanes::ZERO;

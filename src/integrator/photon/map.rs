@@ -326,7 +326,7 @@ mod tests {
                 let direction =
                     if i < 9 { axes[i as usize % 3] } else { (number(i) - number(i + 7000)).normalize() };
                 let t_max = if i % 3 == 0 { f32::INFINITY } else { 0.4 };
-                let ray = Ray { origin: number(40_000 + i) * 1.5 - 0.2, direction, t_max };
+                let ray = Ray { t_max, ..Ray::new(number(40_000 + i) * 1.5 - 0.2, direction) };
                 let mut found: Vec<u32> = Vec::new();
                 map.each_around_ray(&ray, beyond, |p, _, _, _| found.push(p.flux.x as u32));
                 found.sort_unstable();

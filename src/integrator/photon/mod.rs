@@ -78,6 +78,8 @@ pub struct PhotonFrame {
 pub struct PhotonPass {
     /// The wavelengths of all photons and eye paths of the pass.
     pub wavelengths: Wavelengths,
+    /// Their time, in frames since the shutter opened: photons are where they are at that time only.
+    pub time: f32,
     pub(super) caustic: PhotonMap,
     pub(super) global: PhotonMap,
     pub(super) volume: PhotonMap,
@@ -106,7 +108,7 @@ const PHOTON_COLUMN: u32 = u32::MAX;
 impl PhotonMapper {
     /// Finds out how photons are emitted in a frame and how wide they are spread.
     pub fn prepare(&self, frame: &Frame, seed: SampleSeed) -> PhotonFrame {
-        let [width, height] = frame.camera.resolution();
+        let [width, height] = frame.views.opening.resolution();
         let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
         // At least one for each kind of light.
         let count = if self.settings.count == 0 { pixels } else { self.settings.count.max(3) };
@@ -142,12 +144,13 @@ impl PhotonMapper {
 impl PhotonFrame {
     /// Emits the photons of pass `index` and puts them into maps.
     pub fn pass(&self, frame: &Frame, index: u32) -> (PhotonPass, Counters) {
-        let (wavelengths, stream) = self.numbers(frame, index);
-        let arrivals = self.trace(frame, &wavelengths, self.count, &stream);
+        let (common, stream) = self.numbers(frame, index);
+        let arrivals = self.trace(frame, &common, self.count, &stream);
         let settings = &self.mapper.settings;
         let radii = self.radii.shrunk(index, settings.shrink.into());
         let pass = PhotonPass {
-            wavelengths,
+            wavelengths: common.0,
+            time: common.1,
             caustic: PhotonMap::new(&arrivals.caustic, radii.caustic),
             global: PhotonMap::new(&arrivals.global, radii.global),
             volume: PhotonMap::new(&arrivals.volume, radii.volume),
@@ -166,37 +169,47 @@ impl PhotonFrame {
         if self.emission.is_some() { self.count } else { 0 }
     }
 
+    /// Wavelengths and time of a pass, and the numbers of its photons.
     fn numbers(
         &self,
         frame: &Frame,
         pass: u32,
-    ) -> (Wavelengths, impl Fn(u32) -> SampleStream + Sync + use<>) {
+    ) -> ((Wavelengths, f32), impl Fn(u32) -> SampleStream + Sync + use<>) {
         let seed = self.seed;
-        let u = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4()[0];
-        (Wavelengths::for_mode(frame.mode, u), move |photon| SampleStream::of_photon(seed, pass, photon))
+        let [u, v, ..] = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4();
+        let common = (Wavelengths::for_mode(frame.mode, u), frame.views.time(v));
+        (common, move |photon| SampleStream::of_photon(seed, pass, photon))
     }
 
     fn trace(
         &self,
         frame: &Frame,
-        wavelengths: &Wavelengths,
+        (wavelengths, time): &(Wavelengths, f32),
         count: u32,
         stream: &(impl Fn(u32) -> SampleStream + Sync),
     ) -> Arrivals {
         let Some(emission) = &self.emission else { return Arrivals::default() };
         let max_depth = self.mapper.path.interactions();
-        Tracing { frame, emission, wavelengths, count, max_depth, volume_share: self.volume_share }
-            .run(stream)
+        Tracing {
+            frame,
+            emission,
+            wavelengths,
+            time: *time,
+            count,
+            max_depth,
+            volume_share: self.volume_share,
+        }
+        .run(stream)
     }
 
     /// A few photons tell how many of the many collisions in media are worth keeping, and some more the radii.
     fn run_pilots(&mut self, frame: &Frame) {
-        let (wavelengths, stream) = self.numbers(frame, 0);
-        let first = self.trace(frame, &wavelengths, FIRST_PILOT, &stream);
+        let (common, stream) = self.numbers(frame, 0);
+        let first = self.trace(frame, &common, FIRST_PILOT, &stream);
         let in_media = first.volume.len() as f32 / (FIRST_PILOT as f32 * FIRST_SHARE);
         self.volume_share = (KEPT_IN_MEDIA / in_media).min(1.0);
         let count = self.count.min(PILOT);
-        let pilot = self.trace(frame, &wavelengths, count, &stream);
+        let pilot = self.trace(frame, &common, count, &stream);
         // Photons of one pilot stand for so many photons of a pass.
         let share = count as f32 / self.count as f32;
         let natural = |photons: &[Photon]| radius::natural(photons, share);

@@ -58,6 +58,8 @@ pub(super) struct Tracing<'a> {
     pub(super) frame: &'a Frame,
     pub(super) emission: &'a Emission,
     pub(super) wavelengths: &'a Wavelengths,
+    /// When all of them are on their way, in frames since the shutter opened.
+    pub(super) time: f32,
     /// Photons emitted.
     pub(super) count: u32,
     pub(super) max_depth: u32,
@@ -79,7 +81,8 @@ impl Tracing<'_> {
                 for index in range {
                     let mut stream = stream(index);
                     let count = (index, self.count);
-                    if let Some(start) = self.emission.emit(self.frame, self.wavelengths, count, &mut stream)
+                    if let Some(start) =
+                        self.emission.emit(self.frame, (self.wavelengths, self.time), count, &mut stream)
                     {
                         walk.follow(&start, stream);
                     }
@@ -105,6 +108,8 @@ impl Tracing<'_> {
             frame: self.frame,
             scratch,
             wavelengths: self.wavelengths,
+            eye: Vec3::ZERO,
+            time: self.time,
             max_depth: self.max_depth,
             photons: None,
             radiance: Lanes::ZERO,
@@ -171,7 +176,7 @@ impl Walk<'_> {
 
     fn meet(&mut self, flying: &mut Flying, found: &Hit, u: [f32; 4]) -> Fate {
         let frame = self.tracing.frame;
-        let hit = frame.geometry.surface_hit(found, flying.branch.direction);
+        let hit = frame.geometry.surface_hit(found, flying.branch.direction, self.sample.time);
         match frame.surface(hit.triangle) {
             // Light from below a model that is open there, say: no eye path sees where it has got to.
             Surface::Interface(pair) if pair.crossed(hit.from_front).0 != flying.branch.medium => {
@@ -214,7 +219,7 @@ impl Walk<'_> {
         }
         let frame = self.tracing.frame;
         let found = crossing.stronger.unwrap_or(*found);
-        let hit = frame.geometry.surface_hit(&found, branch.direction);
+        let hit = frame.geometry.surface_hit(&found, branch.direction, self.sample.time);
         let pair = crossing.pair(frame, hit.from_front);
         if pair.matched {
             return self.pass(flying, &hit, &pair);
@@ -242,7 +247,7 @@ impl Walk<'_> {
         let (incident, beyond) = pair.crossed(hit.from_front);
         let frame = self.tracing.frame;
         let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
-        let ns = frame.geometry.interpolated_normal(found, hit.ng);
+        let ns = frame.geometry.interpolated_normal(found, hit.ng, self.sample.time);
         let ways = photon_ways(-branch.direction, ns, hit.ng, eta_t_over_i);
         let total: f32 = ways.iter().map(|way| way.share).sum();
         if total <= 0.0 {
@@ -282,7 +287,7 @@ impl Walk<'_> {
         let n = frame.medium(branch.medium).n;
         let [eta, k] = index.map(|curve| curve.lanes(self.tracing.wavelengths) / n);
         // A mirror direction about a normal is its own reverse: the eye path from it must take the same normal.
-        let ns = frame.geometry.interpolated_normal(found, hit.ng);
+        let ns = frame.geometry.interpolated_normal(found, hit.ng, self.sample.time);
         let (about_ns, about_ng) = (reflect(wi, ns), reflect(wi, hit.ng));
         let is_shaded =
             |wo: Vec3| wo.dot(ns) > 0.0 && ns.dot(hit.ng) > 0.0 && reflect(wo, ns).dot(hit.ng) > 0.0;

@@ -81,7 +81,7 @@ pub(super) fn extract(complex: &Complex) -> Result<RawMesh, ComplexError> {
     side_flat(complex, &faces, &flat, &mut triangles)?;
     drop(faces);
     let positions = compact(&complex.positions, &mut triangles);
-    Ok(RawMesh { positions, triangles, interfaces: Some(interfaces), normals: None })
+    Ok(RawMesh { positions, triangles, interfaces: Some(interfaces), normals: None, velocities: None })
 }
 
 /// Turns the faces of flat tetrahedra, which were taken for positive ones.

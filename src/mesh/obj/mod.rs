@@ -64,7 +64,7 @@ fn convert(mesh: Mesh, all_normals: bool) -> Result<RawMesh, DVec3> {
         values: mesh.normals.chunks_exact(3).map(|n| DVec3::from_slice(n).as_vec3()).collect::<Vec<Vec3>>(),
         corners: Some(triples(&mesh.normal_indices)),
     });
-    Ok(RawMesh { positions, triangles: triples(&mesh.indices), interfaces: None, normals })
+    Ok(RawMesh { positions, triangles: triples(&mesh.indices), interfaces: None, normals, velocities: None })
 }
 
 fn triples(indices: &[u32]) -> Vec<[u32; 3]> {

@@ -1,13 +1,13 @@
 //! Reads the PLY layout that nearly every simulator writes straight from its bytes.
 //!
-//! Binary with the least byte first; vertices whose properties are all single numbers, coordinates and normals
-//! among them `float` or `double`; faces whose only list has a one-byte count that is 3 everywhere and four-byte
+//! Binary with the least byte first; vertices whose properties are all single numbers, coordinates, normals and
+//! velocities among them `float` or `double`; faces whose only list has a one-byte count that is 3 everywhere and four-byte
 //! indices. Then every element has the same size. Anything else is left to the general reader.
 
 use glam::{DVec3, Vec3};
 use ply_rs::ply::{ElementDef, Encoding, PropertyType, ScalarType};
 
-use super::header::{Header, check_length, index_list, size};
+use super::header::{Header, VELOCITY, check_length, index_list, size};
 use crate::mesh::{CornerNormals, Interface, RawMesh, Region};
 
 /// Reads everything behind the header; `None` when anything is unusual, errors included.
@@ -43,10 +43,10 @@ struct Record<'a> {
 impl<'a> Record<'a> {
     fn of(element: &'a ElementDef) -> Option<Self> {
         let mut record = Self { stride: 0, properties: Vec::new(), list: None };
-        for property in element.properties.values() {
+        for (name, property) in &element.properties {
             match &property.data_type {
                 PropertyType::Scalar(scalar) => {
-                    record.properties.push((&property.name, record.stride, scalar));
+                    record.properties.push((name, record.stride, scalar));
                     record.stride += size(scalar);
                 }
                 PropertyType::List(ScalarType::UChar, ScalarType::Int | ScalarType::UInt)
@@ -90,14 +90,19 @@ fn read_vertices(bytes: &[u8], record: &Record, header: &Header, mesh: &mut RawM
     if !mesh.positions.iter().all(|position| position.is_finite()) {
         return None;
     }
-    if header.normals {
-        let (at, double) = record.triple(["nx", "ny", "nz"])?;
-        let values = if double {
+    let vectors = |names| {
+        let (at, double) = record.triple(names)?;
+        Some(if double {
             records().map(|bytes| Vec3::from_array(at.map(|at| f64_at(bytes, at) as f32))).collect()
         } else {
             records().map(|bytes| Vec3::from_array(at.map(|at| f32_at(bytes, at)))).collect()
-        };
-        mesh.normals = Some(CornerNormals { values, corners: None });
+        })
+    };
+    if header.normals {
+        mesh.normals = Some(CornerNormals { values: vectors(["nx", "ny", "nz"])?, corners: None });
+    }
+    if header.velocities {
+        mesh.velocities = Some(vectors(VELOCITY)?);
     }
     Some(())
 }

@@ -3,6 +3,8 @@
 use glam::{DVec3, Vec3};
 use ply_rs::ply::{PropertyAccess, PropertyAccessResult};
 
+use super::header::VELOCITY;
+
 /// Implements the setter of every scalar type by one function that takes the wider `$wide`.
 macro_rules! scalar_setters {
     ($wide:ty: $($setter:ident($narrow:ty)),*) => {$(
@@ -32,6 +34,8 @@ pub(super) struct VertexRecord {
     pub position: DVec3,
     /// `nx ny nz`.
     pub normal: Vec3,
+    /// Units per second.
+    pub velocity: Vec3,
 }
 
 impl VertexRecord {
@@ -43,7 +47,10 @@ impl VertexRecord {
             "nx" => self.normal.x = value as f32,
             "ny" => self.normal.y = value as f32,
             "nz" => self.normal.z = value as f32,
-            _ => return PropertyAccessResult::Ignored,
+            _ => match VELOCITY.iter().position(|axis| *axis == name) {
+                Some(axis) => self.velocity[axis] = value as f32,
+                None => return PropertyAccessResult::Ignored,
+            },
         }
         PropertyAccessResult::Set
     }

@@ -49,6 +49,7 @@ fn read_vertices(
 ) -> Result<(), Fault> {
     mesh.positions.reserve_exact(element.count);
     let mut normals = Vec::with_capacity(if header.normals { element.count } else { 0 });
+    let mut velocities = Vec::with_capacity(if header.velocities { element.count } else { 0 });
     for index in 0..element.count {
         let vertex: VertexRecord = records.next(element, index)?;
         if !vertex.position.is_finite() {
@@ -58,8 +59,12 @@ fn read_vertices(
         if header.normals {
             normals.push(vertex.normal);
         }
+        if header.velocities {
+            velocities.push(vertex.velocity);
+        }
     }
     mesh.normals = header.normals.then_some(CornerNormals { values: normals, corners: None });
+    mesh.velocities = header.velocities.then_some(velocities);
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use ply_rs::ply::{self, ElementDef, Encoding, PropertyType, ScalarType};
 use super::elements::VertexRecord;
 use crate::mesh::error::{Fault, Place, excerpt};
 use crate::mesh::limits::{MAX_TRIANGLES, MAX_VERTICES, check_count};
+use crate::mesh::{VelocityName, VelocityProperty};
 
 /// The longest header that is looked through for its end.
 const LONGEST: usize = 1 << 20;
@@ -24,7 +25,12 @@ pub(super) struct Header {
     pub labelled: bool,
     /// Whether vertices carry normals.
     pub normals: bool,
+    /// Whether vertices carry velocities that are wanted; they are renamed to [`VELOCITY`].
+    pub velocities: bool,
 }
+
+/// What velocities are called in [`Header::declared`] whatever the file calls them: no name in a file has a space.
+pub(super) const VELOCITY: [&str; 3] = ["velocity x", "velocity y", "velocity z"];
 
 impl Header {
     /// The number of vertices.
@@ -34,26 +40,42 @@ impl Header {
 }
 
 /// Reads and checks the header of a file.
-pub(super) fn read(bytes: &[u8]) -> Result<Header, Fault> {
+pub(super) fn read(bytes: &[u8], velocity: &VelocityName) -> Result<Header, Fault> {
     let length = length(bytes)?;
     let text = &bytes[..length];
-    let declared = Parser::<VertexRecord>::new().read_header(&mut Reader::new(text)).map_err(|error| {
-        let place = error.line().map_or(Place::File, Place::Line);
-        let message = error.to_string();
-        // The parser's messages about a line quote it.
-        let problem = match message.split_once("String: '") {
-            Some((_, quoted)) => {
-                let line = quoted.lines().next().unwrap_or(quoted).trim_end_matches('\'');
-                format!("not a header line: '{}'", excerpt(line.as_bytes()))
-            }
-            None => excerpt(message.trim_end_matches('.').as_bytes()),
-        };
-        Fault::malformed(place, problem, CURE)
-    })?;
+    let mut declared =
+        Parser::<VertexRecord>::new().read_header(&mut Reader::new(text)).map_err(|error| {
+            let place = error.line().map_or(Place::File, Place::Line);
+            let message = error.to_string();
+            // The parser's messages about a line quote it.
+            let problem = match message.split_once("String: '") {
+                Some((_, quoted)) => {
+                    let line = quoted.lines().next().unwrap_or(quoted).trim_end_matches('\'');
+                    format!("not a header line: '{}'", excerpt(line.as_bytes()))
+                }
+                None => excerpt(message.trim_end_matches('.').as_bytes()),
+            };
+            Fault::malformed(place, problem, CURE)
+        })?;
     check_repeats(text, &declared)?;
     let lines = text.iter().filter(|&&b| b == b'\n').count();
     let (labelled, normals) = check_roles(&declared)?;
-    Ok(Header { declared, length, lines, labelled, normals })
+    let velocities = rename_velocities(&mut declared, velocity);
+    Ok(Header { declared, length, lines, labelled, normals, velocities })
+}
+
+/// Gives the wanted velocities their names, if there are any.
+fn rename_velocities(declared: &mut ply::Header, velocity: &VelocityName) -> bool {
+    let Some(vertex) = declared.elements.get_mut("vertex") else { return false };
+    let is_number = |property: &&ply::PropertyDef| matches!(property.data_type, PropertyType::Scalar(_));
+    let numbers: Vec<&str> = vertex.properties.values().filter(is_number).map(|p| p.name.as_str()).collect();
+    let Some(VelocityProperty::Components(names)) = velocity.find(&[], &numbers) else { return false };
+    let renamed = std::mem::take(&mut vertex.properties).into_iter().map(|(name, property)| {
+        let axis = names.iter().position(|of_axis| *of_axis == name);
+        (axis.map_or(name, |axis| VELOCITY[axis].to_owned()), property)
+    });
+    vertex.properties = renamed.collect();
+    true
 }
 
 /// The bytes up to and including the line `end_header`.

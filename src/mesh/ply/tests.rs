@@ -4,6 +4,10 @@ use proptest::prelude::*;
 use super::*;
 use crate::mesh::{Interface, Region};
 
+fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
+    super::read(bytes, &VelocityName::Known)
+}
+
 /// The number types in both spellings, each with a number that the narrower ones cannot hold.
 const TYPES: [(&str, &str, f64); 8] = [
     ("char", "int8", 127.0),
@@ -108,6 +112,17 @@ fn normals_may_be_anything_even_in_text() {
     assert_eq!(values[1], Vec3::Z);
 }
 
+#[test]
+fn velocities_are_read_where_they_are_wanted() {
+    let file = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float vy\nproperty float x\nproperty float y\n\
+                property float z\nproperty short VX\nproperty double vz\nend_header\n2 .5 -1. 1 1 nan\n0 0 0 0 0 7\n";
+    let velocities = read(file.as_bytes()).unwrap().velocities.unwrap();
+    assert_eq!((velocities[0].x, velocities[0].y, velocities[1]), (1.0, 2.0, Vec3::Z * 7.0));
+    assert!(!velocities[0].z.is_finite());
+    let none = super::read(file.as_bytes(), &VelocityName::Nothing).unwrap();
+    assert_eq!((none.positions[0], none.velocities), (DVec3::new(0.5, -1.0, 1.0), None));
+}
+
 /// A file of the layout that the direct reader takes.
 #[derive(Clone, Debug)]
 struct Sample {
@@ -128,7 +143,8 @@ impl Sample {
             header += &format!("property {coordinate} {axis}\n");
         }
         if self.normals {
-            header += "property short vx\nproperty float nx\nproperty float ny\nproperty float nz\n";
+            header += "property short age\nproperty float nx\nproperty float ny\nproperty float nz\n";
+            header += "property double vx\nproperty double vy\nproperty double vz\n";
         }
         header += &format!("element extra 2\nproperty double a\nelement face {}\n", self.faces.len());
         header += &format!("property uchar flags\nproperty list uchar {} vertex_index\n", self.index_type);
@@ -142,6 +158,7 @@ impl Sample {
             if self.normals {
                 bytes.extend([7, 0]);
                 bytes.extend(vertex.map(|value| bytes_of("float", f64::from(value))).concat());
+                bytes.extend(vertex.map(|value| bytes_of("double", f64::from(-value))).concat());
             }
         }
         bytes.extend([1; 16]);
@@ -184,7 +201,7 @@ proptest! {
     #[test]
     fn the_direct_reader_gives_what_the_general_one_gives(sample in samples()) {
         let bytes = sample.bytes();
-        let header = header::read(&bytes).unwrap();
+        let header = header::read(&bytes, &VelocityName::Known).unwrap();
         let payload = &bytes[header.length..];
         let direct = direct::read(&header, payload);
         prop_assert!(direct.is_some());
@@ -202,7 +219,7 @@ proptest! {
         let flipped = (at * bytes.len() as f64) as usize;
         bytes[flipped] = value;
         bytes.truncate(bytes.len() - cut.saturating_sub(20));
-        let Ok(header) = header::read(&bytes) else { return Ok(()) };
+        let Ok(header) = header::read(&bytes, &VelocityName::Known) else { return Ok(()) };
         let payload = &bytes[header.length..];
         if let Some(direct) = direct::read(&header, payload) {
             let general = general::read(&header, payload).unwrap();

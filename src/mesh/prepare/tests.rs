@@ -75,6 +75,16 @@ fn a_soup_is_welded() {
 }
 
 #[test]
+fn velocities_that_are_not_finite_are_told_and_set_to_zero() {
+    let mut mesh = tetrahedron();
+    let nan = Vec3::new(0.0, f32::NAN, 1.0);
+    mesh.velocities = Some(vec![Vec3::X, nan, Vec3::Y, Vec3::INFINITY]);
+    let (mesh, warnings) = prepared(mesh);
+    assert_eq!(mesh.velocities, Some(vec![Vec3::X, Vec3::ZERO, Vec3::Y, Vec3::ZERO]));
+    assert_eq!(warnings, [MeshWarning::Velocities { not_finite: 2, all: 4 }]);
+}
+
+#[test]
 fn closed_surfaces_that_touch_stay_apart() {
     let mut mesh = tetrahedron();
     // They have the point at 1 on the x axis in common.

@@ -153,7 +153,7 @@ impl GridDensity {
         let q = Ray {
             origin: (ray.origin - self.min) * self.per_metre + 0.5,
             direction: ray.direction * self.per_metre,
-            t_max: ray.t_max,
+            ..*ray
         };
         let Some((start, end)) = self.clip(&q) else { return };
         let cells = self.size - 1;

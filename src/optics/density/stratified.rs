@@ -78,7 +78,7 @@ mod tests {
 
     fn ray(height: f32, slope: f32, t_max: f32) -> Ray {
         let direction = Vec3::new((1.0 - slope * slope).sqrt(), 0.0, slope);
-        Ray { origin: Vec3::new(3.0, -2.0, height), direction, t_max }
+        Ray { t_max, ..Ray::new(Vec3::new(3.0, -2.0, height), direction) }
     }
 
     fn layers(depth: f32) -> Stratified {

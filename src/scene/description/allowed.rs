@@ -48,6 +48,10 @@ impl Allowed {
     pub const DEFLECTION: Self = Self::closed(0.0, 180.0, "an angle from 0 to 180 degrees");
     /// An angle in degrees below a half turn.
     pub const HALF_TURN: Self = Self::open(0.0, 180.0, "an angle between 0 and 180 degrees, both excluded");
+    /// Frames in which a turntable goes round once; below 0 it goes the other way.
+    pub const FRAMES_PER_TURN: Self = Self::closed(-1e6, 1e6, "a number of frames from -1000000 to 1000000");
+    /// An angle in degrees from frame to frame.
+    pub const DEGREES_PER_FRAME: Self = Self::closed(-360.0, 360.0, "an angle from -360 to 360 degrees");
     /// A coordinate. Beyond this even re-centred positions lose the scene.
     pub const COORDINATE: Self = Self::closed(-1e12, 1e12, "a number from -1e12 to 1e12");
     /// Metres per unit.

@@ -10,7 +10,7 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 8] = [
+pub const EXAMPLES: [Example; 9] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
@@ -19,6 +19,7 @@ pub const EXAMPLES: [Example; 8] = [
     Example { name: "plain numbers", text: PLAIN_NUMBERS },
     Example { name: "phase functions", text: PHASE_FUNCTIONS },
     Example { name: "turbid", text: TURBID },
+    Example { name: "moving camera", text: MOVING_CAMERA },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -28,6 +29,7 @@ fps = 24
 scale = 1.0
 up = "z"
 normals = "smooth"
+velocity = "auto"
 inside = 1
 
 [regions]
@@ -67,6 +69,10 @@ eye = [1.1, 2.3, 2.3]
 target = [0.0, 0.5, 0.0]
 up = [0, 0, 1]
 vertical_fov = 40
+shutter = 0.5
+aperture = 0.02
+focus_distance = 3.5
+turntable = { frames_per_turn = 120, frame = 0 }
 resolution = [640, 360]
 
 [render]
@@ -82,7 +88,7 @@ filter = "box"
 path = "out/frame_####.exr"
 png = true
 exposure = 0.5
-aovs = ["albedo", "N", "P", "Z", "variance"]
+aovs = ["albedo", "N", "P", "Z", "motion", "variance"]
 "#;
 
 const SPECTRAL: &str = r#"
@@ -90,6 +96,7 @@ const SPECTRAL: &str = r#"
 path = "frames"
 up = "-y"
 normals = "file"
+velocity = "momentum"
 inside = 4
 
 [regions]
@@ -177,7 +184,7 @@ filter = "gaussian"
 "#;
 
 const AUTOMATIC_CAMERA: &str = r#"
-frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y" }
+frames = { path = "frames/iter_*.dsc", normals = "flat", up = "y", velocity = "frames" }
 camera = { resolution = [1920, 1080], vertical_fov = 30 }
 render.integrator = "photon"
 render.photons = { count = 50000, radius = 0.1, volume_radius = 0.2, shrink = 0.8, kernel = "cone", final_gather = false, guide = false, sky = true }
@@ -254,4 +261,16 @@ density = { stratified = 2 }
 [render]
 integrator = "single-scattering"
 forced_scattering = 2
+"#;
+
+const MOVING_CAMERA: &str = r#"
+[camera]
+eye = [
+    { frame = 1, eye = [4, 0, 1], target = [0, 0, 0.5], vertical_fov = 40 },
+    { frame = 12.5, eye = [3, 2, 0.5], vertical_fov = 30, focus_distance = 2 },
+    { frame = 30, eye = [0, 3, -0.2] },
+]
+target = [0, 0, 0]
+vertical_fov = 50
+turntable = { degrees_per_frame = -0.5 }
 "#;

@@ -4,7 +4,7 @@ use super::allowed::Allowed;
 use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
-use super::{Axis, FramesDescription, NormalsDescription};
+use super::{Axis, FramesDescription, NormalsDescription, VelocityDescription};
 use crate::mesh::Region;
 
 /// Reads `[frames]`; `has_meshes` says that its files are those of `[[meshes]]`.
@@ -18,6 +18,7 @@ pub(super) fn read(value: &Value<'_>, has_meshes: bool) -> Result<FramesDescript
         scale: number("scale", 1.0, &Allowed::SCALE)?,
         up: table.get("up").map_or(Ok(Axis::Z), |v| axis(&v))?,
         normals: table.get("normals").map_or(Ok(NormalsDescription::default()), |v| normals(&v))?,
+        velocity: table.get("velocity").map_or(Ok(VelocityDescription::Auto), |v| velocity(&v))?,
         inside: table.get("inside").map_or(Ok(Region(1)), |v| inside(&v))?,
     };
     table.finish()?;
@@ -40,6 +41,17 @@ fn path(table: &Table<'_>, has_meshes: bool) -> Result<String, SceneError> {
 pub(super) fn normals(value: &Value<'_>) -> Result<NormalsDescription, SceneError> {
     use NormalsDescription::{File, Flat, Smooth};
     value.choice(&[("smooth", Smooth), ("flat", Flat), ("file", File)])
+}
+
+/// `velocity = "auto" | "none" | "frames" | NAME`
+fn velocity(value: &Value<'_>) -> Result<VelocityDescription, SceneError> {
+    use VelocityDescription::{Auto, Frames, None, Property};
+    Ok(match value.text("\"auto\", \"none\", \"frames\" or the name of a property of the frame files,")? {
+        "auto" => Auto,
+        "none" => None,
+        "frames" => Frames,
+        name => Property(name.to_owned()),
+    })
 }
 
 /// `up = "z"`

@@ -90,6 +90,8 @@ pub struct FramesDescription {
     pub up: Axis,
     /// Where shading normals come from (smooth).
     pub normals: NormalsDescription,
+    /// Where velocities come from (auto).
+    pub velocity: VelocityDescription,
     /// The label inside closed meshes that carry no labels (1).
     pub inside: Region,
 }
@@ -118,6 +120,20 @@ pub enum MeshContents {
     Inside(String),
     /// Medium names by label, those of `[regions]` unless the mesh has its own.
     Regions(BTreeMap<Region, String>),
+}
+
+/// Where the velocities of vertices come from, which motion blur needs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum VelocityDescription {
+    /// From the frame files, under any name that simulators are known to use.
+    #[default]
+    Auto,
+    /// From nowhere: nothing moves within a frame.
+    None,
+    /// From the next frame, where its triangles are the same in the same order.
+    Frames,
+    /// From the frame files, under this name.
+    Property(String),
 }
 
 /// A signed coordinate axis, as in `up = "z"` or `up = "-y"`.
@@ -324,14 +340,46 @@ pub enum SkyDescription {
 /// `[camera]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraDescription {
-    /// Where the camera is; `None` frames the first frame.
+    /// Where the camera is, at the first key if there are any; `None` frames the first frame.
     pub placement: Option<Placement>,
+    /// Where the camera is in which frame, in order; empty where it is the same in all.
+    pub keys: Vec<CameraKey>,
+    /// Turns the camera round its target.
+    pub turntable: Option<TurntableDescription>,
     /// The direction that is up in the picture, a unit vector (`frames.up`).
     pub up: Vec3,
     /// Field of view (40 degrees vertically).
     pub fov: FieldOfView,
+    /// How long the shutter is open, as a part of a frame; it opens at the time of the frame (0).
+    pub shutter: f32,
+    /// Diameter of the lens in metres (0, a pinhole).
+    pub aperture: f32,
+    /// Depth that is in focus, in metres; `None` is that of the target.
+    pub focus_distance: Option<f64>,
     /// Width and height in pixels (640 x 360).
     pub resolution: [u32; 2],
+}
+
+/// Where the camera is in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraKey {
+    /// The frame's number.
+    pub frame: f64,
+    /// Where the camera is.
+    pub placement: Placement,
+    /// Field of view; of the same kind in all keys.
+    pub fov: FieldOfView,
+    /// Depth that is in focus, in metres; `None` is that of the target.
+    pub focus_distance: Option<f64>,
+}
+
+/// `camera.turntable`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableDescription {
+    /// Angle by which the camera goes on around its target in each frame, anticlockwise seen from above.
+    pub degrees_per_frame: f64,
+    /// The frame in which it is where the scene says (1).
+    pub frame: f64,
 }
 
 /// Where the camera is and what it looks at.
@@ -465,4 +513,6 @@ pub enum Aov {
     Depth,
     /// Variance of the pixel's mean.
     Variance,
+    /// Where the first surface goes until the next frame, in pixels.
+    Motion,
 }

@@ -11,12 +11,13 @@ impl Default for OutputDescription {
     }
 }
 
-const AOVS: [(&str, Aov); 5] = [
+const AOVS: [(&str, Aov); 6] = [
     ("albedo", Aov::Albedo),
     ("N", Aov::Normal),
     ("P", Aov::Position),
     ("Z", Aov::Depth),
     ("variance", Aov::Variance),
+    ("motion", Aov::Motion),
 ];
 
 /// Reads `[output]`.

@@ -4,7 +4,7 @@
 //! extended (see [`super::stitch`]). A drop that touches a wall keeps the faces it has there. What
 //! lies in a hole of an extended region (a bubble, or a drop of oil in water) gets a flat cap on the wall.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::rim::{EdgeUse, Rim, RimEdge, by_edge, find_rims, open_uses, wall_edges};
 use super::stitch::stitch;
@@ -24,6 +24,8 @@ pub(super) struct Extension {
 #[derive(Default)]
 pub(super) struct Patch {
     pub positions: Vec<DVec3>,
+    /// One a vertex where the mesh has velocities, else none.
+    pub velocities: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
     pub interfaces: Vec<Interface>,
     pub sides: Vec<Option<Side>>,
@@ -143,6 +145,10 @@ fn cap(mesh: &RawMesh, island: &Rim, patch: &mut Patch) -> Result<(), DomainErro
         .map_err(|_| DomainError::TooLarge { rim, limit: u32::MAX })?;
     let sum: DVec3 = island.edges.iter().map(|edge| mesh.positions[edge.from as usize]).sum();
     patch.positions.push(sum / rim as f64);
+    if let Some(velocities) = &mesh.velocities {
+        let sum: Vec3 = island.edges.iter().map(|edge| velocities[edge.from as usize]).sum();
+        patch.velocities.push(sum / rim as f32);
+    }
     for edge in &island.edges {
         patch.push(edge, [edge.to, edge.from, centre], Some(edge.side));
     }
@@ -162,6 +168,9 @@ fn replace(mesh: &mut RawMesh, faces: &mut WallFaces, removed: &[bool], patch: P
         interfaces.extend(patch.interfaces);
     }
     mesh.positions.extend(patch.positions);
+    if let Some(velocities) = &mut mesh.velocities {
+        velocities.extend(patch.velocities);
+    }
     if let Some(normals) = &mut mesh.normals {
         match &mut normals.corners {
             Some(corners) => {

@@ -9,6 +9,8 @@
 //! there flat rings grow by a factor of 4 until s >= 1e5. Ring 0 is the rim itself, vertices and all, so that
 //! the stitching is watertight.
 //!
+//! A rim that moves takes the rings with it by 1 - w: the flat sea is still.
+//!
 //! Every rim that runs round the box has its own mean (layers stay apart); chains, which stop at the bottom or
 //! where three regions meet, have that of all chains of their labels. Where rims meet in a vertex they share its
 //! column of ring vertices, at the average of their means. A rim that doubles back (a wave that
@@ -214,6 +216,10 @@ fn place(
             p[axis] = own[axis] + weight * (mean - own[axis]);
             p
         }));
+        if let Some(velocities) = &mesh.velocities {
+            let own = velocities[column.vertex as usize];
+            patch.velocities.extend(scales[..count].iter().map(|&(_, weight)| own * (1.0 - weight as f32)));
+        }
     }
     let total = mesh.positions.len() + patch.positions.len();
     if u32::try_from(total).is_ok() { Ok(()) } else { Err(too_large) }

@@ -102,7 +102,7 @@ fn to_light(mesh: &Mesh, landings: &[Landing]) -> Vec<Ray> {
         let origin = landing.point + landing.normal * (OFFSET * mesh.extent);
         let light = Vec3::new(2.2, -2.0 + 0.3 * random.signed(), 1.5 + 0.3 * random.signed()) * mesh.extent;
         let way = light - origin;
-        Ray { origin, direction: way.normalize(), t_max: way.length() }
+        Ray { t_max: way.length(), ..Ray::new(origin, way.normalize()) }
     };
     landings.iter().map(aim).collect()
 }

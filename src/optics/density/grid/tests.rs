@@ -52,7 +52,7 @@ fn rays() -> Vec<Ray> {
         .map(|i| {
             let origin = Vec3::new(number(i, 0), number(i, 1), number(i, 2) + 1.0) * 1.3;
             let direction = Vec3::new(number(i, 3), number(i, 4), number(i, 5)).normalize();
-            Ray { origin, direction, t_max: if i % 2 == 0 { f32::INFINITY } else { 0.7 } }
+            Ray { t_max: if i % 2 == 0 { f32::INFINITY } else { 0.7 }, ..Ray::new(origin, direction) }
         })
         .collect();
     for direction in [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_X] {
