@@ -55,13 +55,14 @@ fn check(name: &str, scene: &Prepared, bodies: &[(&TestMesh, f64)]) {
     let frame = &scene.frame;
     let mut scratch = Scratch::default();
     let wavelengths = Wavelengths::for_mode(frame.mode, 0.5);
-    let [width, height] = frame.camera.resolution();
+    let camera = &frame.views.opening;
+    let [width, height] = camera.resolution();
     let (mut off, mut within, mut worst) = (0, 0, 0.0_f64);
     for i in 0..width * height {
         let point = [(i % width) as f32 + 0.5, (i / width) as f32 + 0.5];
         let stream = SampleStream::new(SampleSeed { seed: 1, frame: 0 }, i, 0, 0);
-        let found = scene.sampling.integrator.sample(frame, &mut scratch, point, &wavelengths, stream, None);
-        let ray = frame.camera.ray(point[0], point[1]);
+        let ray = camera.ray(point[0], point[1]);
+        let found = scene.sampling.integrator.sample(frame, &mut scratch, &ray, &wavelengths, stream, None);
         let depth = depth(bodies, ray.origin.as_dvec3() + frame.origin, ray.direction.as_dvec3());
         let error = (f64::from(found.radiance.max_element()) / (-depth).exp() - 1.0).abs();
         within += u32::from(depth > 0.0);
