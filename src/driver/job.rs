@@ -46,17 +46,40 @@ impl Job {
     /// # Errors
     /// When nothing is there, or the scene file is wrong, or no frames are found.
     pub fn open(path: &Path) -> Result<Self, RenderError> {
-        let (file, written_scene, name) = scene_file(path)?;
-        let description = SceneDescription::from_file(&file)?;
-        let files = match &description.frames {
-            Some(frames) => discover(&description.directory, &frames.path)?,
-            None => Vec::new(),
+        let first = |base: &Path, pattern: &str| {
+            let files = discover(base, pattern)?;
+            Ok(mesh::read(&files[0].path).map_err(FrameError::from)?)
         };
+        let mut job = Self::open_on(path, &first)?;
+        let description = &job.world.description;
+        if let Some(frames) = &description.frames {
+            job.files = discover(&description.directory, &frames.path)?;
+        }
+        Ok(job)
+    }
+
+    /// Opens a scene file or a folder whose frames are still being written; `files` is empty.
+    ///
+    /// `first` reads the frame of a folder and pattern that a camera without placement, or a folder without a scene, is
+    /// to be about. It is not asked for otherwise.
+    ///
+    /// # Errors
+    /// When nothing is there, or the scene file is wrong, and those of `first`.
+    pub fn open_on(path: &Path, first: &FirstMesh<'_>) -> Result<Self, RenderError> {
+        let (file, is_new, name) = match find_scene(path)? {
+            SceneFile::There { file, name } => (file, false, name),
+            SceneFile::ToBeWritten { file, name } => {
+                write_default_scene(path, &file, &first(path, "")?)?;
+                (file, true, name)
+            }
+        };
+        let description = SceneDescription::from_file(&file)?;
         let placement = match &description.camera.placement {
             Some(placement) => *placement,
-            None => framed(&description, &files)?,
+            None => framed(&description, first)?,
         };
-        Ok(Self { world: World::new(description, placement)?, files, written_scene, name })
+        let written_scene = is_new.then_some(file);
+        Ok(Self { world: World::new(description, placement)?, files: Vec::new(), written_scene, name })
     }
 
     /// Every frame, in order.
@@ -91,13 +114,25 @@ impl Job {
     }
 }
 
-/// The scene file of what the user gave, whether it was written just now, and the name of the whole.
-fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderError> {
+/// Reads the first frame of a folder and a pattern.
+pub type FirstMesh<'a> = dyn Fn(&Path, &str) -> Result<RawMesh, RenderError> + 'a;
+
+/// The scene file of what the user gave, and the name of the whole.
+#[derive(Debug)]
+pub(super) enum SceneFile {
+    /// It is there.
+    There { file: PathBuf, name: String },
+    /// A folder without one: it is to be written from its first frame.
+    ToBeWritten { file: PathBuf, name: String },
+}
+
+/// Finds the scene file.
+pub(super) fn find_scene(path: &Path) -> Result<SceneFile, RenderError> {
     if path.is_file() {
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         let is_plain = path.file_name().is_some_and(|n| n == SCENE_FILE);
         let name = if is_plain { folder_name(path.parent().unwrap_or(path)) } else { stem };
-        return Ok((path.into(), None, name));
+        return Ok(SceneFile::There { file: path.into(), name });
     }
     if !path.is_dir() {
         return Err(RenderError::NotFound { path: path.into() });
@@ -105,15 +140,14 @@ fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderE
     let name = folder_name(path);
     let own = path.join(SCENE_FILE);
     if own.is_file() {
-        return Ok((own, None, name));
+        return Ok(SceneFile::There { file: own, name });
     }
-    let beside = Path::new("out").join(&name).join(SCENE_FILE);
-    if beside.is_file() {
-        check_folder(&beside, path)?;
-        return Ok((beside, None, name));
+    let file = Path::new("out").join(&name).join(SCENE_FILE);
+    if !file.is_file() {
+        return Ok(SceneFile::ToBeWritten { file, name });
     }
-    write_default_scene(path, &beside)?;
-    Ok((beside.clone(), Some(beside), name))
+    check_folder(&file, path)?;
+    Ok(SceneFile::There { file, name })
 }
 
 /// Checks that a scene that was written earlier is about this folder: two folders may have the same name.
@@ -133,9 +167,7 @@ fn folder_name(folder: &Path) -> String {
 }
 
 /// Writes the scene of a folder that has none, from its first frame.
-fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
-    let frames = discover(folder, "")?;
-    let first = mesh::read(&frames[0].path).map_err(FrameError::from)?;
+fn write_default_scene(folder: &Path, file: &Path, first: &RawMesh) -> Result<(), RenderError> {
     let mut labels: Vec<i32> = match &first.interfaces {
         Some(interfaces) => interfaces.iter().flat_map(|i| [i.front.0, i.back.0]).collect(),
         None => vec![1],
@@ -145,7 +177,7 @@ fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
     let target = file.parent().unwrap_or(Path::new("."));
     let frames = relative_path(target, folder);
     let name = frames.to_str().ok_or_else(|| RenderError::NotUtf8 { path: folder.into() })?;
-    let text = default_scene(name, bounds_of(&first), &labels, detect_box(&first));
+    let text = default_scene(name, bounds_of(first), &labels, detect_box(first));
     Ok(write_atomically(file, text.as_bytes())?)
 }
 
@@ -170,14 +202,14 @@ fn normalised(path: &Path) -> PathBuf {
     }
 }
 
-/// A camera on the bounds of the lowest-numbered frame, or of the surfaces of a still.
-fn framed(description: &SceneDescription, files: &[FrameFile]) -> Result<Placement, RenderError> {
-    let bounds = match (files.first(), &description.frames) {
-        (Some(first), Some(frames)) => {
-            let (min, max) = bounds_of(&mesh::read(&first.path).map_err(FrameError::from)?);
+/// A camera on the bounds of the first frame, or of the surfaces of a still.
+fn framed(description: &SceneDescription, first: &FirstMesh<'_>) -> Result<Placement, RenderError> {
+    let bounds = match &description.frames {
+        Some(frames) => {
+            let (min, max) = bounds_of(&first(&description.directory, &frames.path)?);
             (min * frames.scale, max * frames.scale)
         }
-        _ => surfaces_bounds(description)?,
+        None => surfaces_bounds(description)?,
     };
     let camera = &description.camera;
     Ok(automatic_placement(bounds, camera.up, camera.fov, camera.resolution))

@@ -5,12 +5,15 @@
 //! never takes the others with it when [`RenderOptions::keep_going`] is set.
 
 mod ahead;
+mod arrivals;
 pub mod error;
 pub mod job;
 pub mod ledger;
+pub mod ready;
 pub mod render;
 mod session;
 pub mod tiles;
+pub mod whole;
 
 pub use error::RenderError;
 pub use job::Job;
