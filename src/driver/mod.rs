@@ -6,13 +6,19 @@
 
 mod ahead;
 pub mod error;
+pub mod fingerprint;
+pub mod interrupt;
 pub mod job;
 pub mod ledger;
+pub mod picture;
 pub mod render;
 mod session;
 pub mod tiles;
 
 pub use error::RenderError;
+pub use fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
+pub use interrupt::Interrupt;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
+pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
