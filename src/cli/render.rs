@@ -48,6 +48,7 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         seed: arguments.seed,
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
+        ..RenderOptions::default()
     };
     let progress = Progress::new(arguments.quiet);
     let report = Job::open(&arguments.scene).and_then(|job| {

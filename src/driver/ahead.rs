@@ -5,12 +5,13 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 
 use super::error::RenderError;
+use super::fingerprint::{Fingerprints, FrameSource, Identity};
 use super::job::FrameTask;
 use crate::mesh;
 use crate::scene::FrameError;
@@ -46,41 +47,52 @@ impl Pools {
     }
 }
 
+/// A frame that is ready, and which it is.
+#[derive(Debug)]
+pub(super) struct Ready {
+    pub assembled: Assembled,
+    pub identity: Identity,
+}
+
 /// A frame that is ready, or what is wrong with it.
-type Outcome = (Result<Assembled, RenderError>, Preparation);
+type Outcome = (Result<Ready, RenderError>, Preparation);
 
 /// Gives `turn` each task in order with its frame, while the next one is made ready; stops when it returns false. Returns
 /// how many had their turn.
 pub(super) fn one_ahead(
     world: &World,
+    fingerprints: &Fingerprints,
     pools: &Pools,
     tasks: &[FrameTask],
-    mut turn: impl FnMut(&FrameTask, Result<&Assembled, RenderError>, Preparation) -> bool,
+    mut turn: impl FnMut(&FrameTask, Result<&Ready, RenderError>, Preparation) -> bool,
 ) -> usize {
-    let mut latest: Option<Assembled> = None;
+    let mut latest: Option<Ready> = None;
     let mut next: Option<Outcome> = None;
     let mut waiting = Instant::now();
     for (i, task) in tasks.iter().enumerate() {
         let (outcome, mut preparation) = next.take().unwrap_or_else(|| {
             // Nothing is rendered: the first frame, or one after a bad one.
-            let previous = latest.as_ref().map(|assembled| &assembled.frame);
-            pools.render.install(|| prepare(world, task, previous, Buffers::default()))
+            let previous = latest.as_ref().map(|ready| &ready.assembled.frame);
+            pools.render.install(|| prepare(world, fingerprints, task, previous, Buffers::default()))
         });
         preparation.wait_seconds = waiting.elapsed().as_secs_f64();
-        let mut take_turn = |prepared: Result<&Assembled, RenderError>| {
+        let mut take_turn = |prepared: Result<&Ready, RenderError>| {
             let goes_on = turn(task, prepared, preparation);
             waiting = Instant::now();
             goes_on
         };
         let goes_on = match outcome {
             Err(error) => take_turn(Err(error)),
-            Ok(assembled) => {
-                let buffers = latest.take().map(|before| Buffers::from(before.frame)).unwrap_or_default();
-                let latest: &Assembled = latest.insert(assembled);
+            Ok(ready) => {
+                let before = latest.take().map(|before| Buffers::from(before.assembled.frame));
+                let buffers = before.unwrap_or_default();
+                let latest: &Ready = latest.insert(ready);
                 pools.spare.in_place_scope(|scope| {
                     if let Some(task) = tasks.get(i + 1) {
-                        let (next, previous) = (&mut next, Some(&latest.frame));
-                        scope.spawn(move |_| *next = Some(prepare(world, task, previous, buffers)));
+                        let (next, previous) = (&mut next, Some(&latest.assembled.frame));
+                        scope.spawn(move |_| {
+                            *next = Some(prepare(world, fingerprints, task, previous, buffers))
+                        });
                     }
                     take_turn(Ok(latest))
                 })
@@ -93,19 +105,30 @@ pub(super) fn one_ahead(
     tasks.len()
 }
 
-fn prepare(world: &World, task: &FrameTask, previous: Option<&Frame>, buffers: Buffers) -> Outcome {
+fn prepare(
+    world: &World,
+    fingerprints: &Fingerprints,
+    task: &FrameTask,
+    previous: Option<&Frame>,
+    buffers: Buffers,
+) -> Outcome {
     let mut preparation = Preparation::default();
-    let outcome = timed(&mut preparation.read_seconds, || read(task.file.as_deref())).and_then(|mesh| {
-        let assemble = || world.assemble_into(buffers, task.number, mesh, previous);
-        Ok(timed(&mut preparation.build_seconds, assemble)?)
+    let read = || {
+        let FrameSource { mesh, inputs, identity } = FrameSource::read(world, fingerprints, task)?;
+        Ok((parsed(mesh)?, inputs, identity))
+    };
+    let outcome = timed(&mut preparation.read_seconds, read).and_then(|(mesh, inputs, identity)| {
+        let assemble = || world.assemble_into(buffers, task.number, mesh, inputs, previous);
+        Ok(Ready { assembled: timed(&mut preparation.build_seconds, assemble)?, identity })
     });
     (outcome, preparation)
 }
 
-fn read(file: Option<&Path>) -> Result<Option<FrameMesh>, RenderError> {
-    let Some(path) = file else { return Ok(None) };
-    let mesh = mesh::read(path).map_err(FrameError::from)?;
-    Ok(Some(FrameMesh { path: path.into(), mesh }))
+/// The mesh in the very bytes that were hashed.
+fn parsed(file: Option<(PathBuf, Vec<u8>)>) -> Result<Option<FrameMesh>, RenderError> {
+    let Some((path, bytes)) = file else { return Ok(None) };
+    let mesh = mesh::parse(&bytes, &path).map_err(FrameError::from)?;
+    Ok(Some(FrameMesh { path, mesh }))
 }
 
 /// Adds the time that some work takes.

@@ -7,8 +7,11 @@
 mod ahead;
 mod arrivals;
 pub mod error;
+pub mod fingerprint;
+pub mod interrupt;
 pub mod job;
 pub mod ledger;
+pub mod picture;
 pub mod ready;
 pub mod render;
 mod session;
@@ -16,6 +19,9 @@ pub mod tiles;
 pub mod whole;
 
 pub use error::RenderError;
+pub use fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
+pub use interrupt::Interrupt;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
+pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};

@@ -5,9 +5,12 @@ use std::time::Instant;
 
 use super::ahead::{Pools, one_ahead};
 use super::error::RenderError;
+use super::fingerprint::Fingerprints;
+use super::interrupt::Interrupt;
 use super::job::{FrameTask, Job};
 use super::ledger::FrameRecord;
 use super::session::Session;
+use crate::scene::description::RenderDescription;
 use crate::sequence::{
     FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps,
 };
@@ -27,6 +30,19 @@ pub struct RenderOptions {
     pub threads: Option<usize>,
     /// Renders the other frames after a bad one.
     pub keep_going: bool,
+    /// Asks the run to stop, or to save how far it has come.
+    pub interrupt: Interrupt,
+}
+
+impl RenderOptions {
+    /// The settings of a scene with what is overridden.
+    pub fn settings(&self, scene: &RenderDescription) -> RenderDescription {
+        RenderDescription {
+            samples: self.samples.unwrap_or(scene.samples),
+            seed: self.seed.unwrap_or(scene.seed),
+            ..scene.clone()
+        }
+    }
 }
 
 /// Hears of what happens while frames are rendered.
@@ -82,7 +98,8 @@ pub fn render(
     for number in absent {
         session.absent(number, not_there(job, number));
     }
-    let tried = one_ahead(&job.world, &pools, &tasks, |task, prepared, preparation| {
+    let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
+    let tried = one_ahead(&job.world, &fingerprints, &pools, &tasks, |task, prepared, preparation| {
         observer.frame(task.number);
         let is_done = pools.render.install(|| session.turn(task, prepared, preparation));
         is_done || options.keep_going

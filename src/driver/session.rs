@@ -2,17 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use super::ahead::{Preparation, timed};
+use super::ahead::{Preparation, Ready, timed};
 use super::error::RenderError;
+use super::fingerprint::Identity;
 use super::job::{FrameTask, Job};
 use super::ledger::{FrameRecord, Ledger, Status};
+use super::picture::{FINGERPRINT, MESH_HASH, picture_path as picture};
 use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Sampling, render_pixels};
 use crate::accel::Hierarchy;
 use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::scene::assembly::Assembled;
 use crate::scene::description::RenderDescription;
-use crate::sequence::{FrameNumber, output_path};
+use crate::sequence::FrameNumber;
 use crate::spectrum::LaneMode;
 
 /// The frames of one run: their settings, and what has become of them.
@@ -34,7 +36,7 @@ impl<'a> Session<'a> {
         pattern: &str,
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
-        let settings = effective(&job.world.description.render, options);
+        let settings = options.settings(&job.world.description.render);
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
         let report = RenderReport {
@@ -77,7 +79,7 @@ impl<'a> Session<'a> {
     pub fn turn(
         &mut self,
         task: &FrameTask,
-        prepared: Result<&Assembled, RenderError>,
+        prepared: Result<&Ready, RenderError>,
         preparation: Preparation,
     ) -> bool {
         let output = picture(&self.pattern, task.number);
@@ -85,7 +87,7 @@ impl<'a> Session<'a> {
         record.read_seconds = preparation.read_seconds;
         record.build_seconds = preparation.build_seconds;
         record.wait_seconds = preparation.wait_seconds;
-        let outcome = prepared.and_then(|assembled| self.render(task, assembled, &mut record));
+        let outcome = prepared.and_then(|ready| self.render(task, ready, &mut record));
         if outcome.is_ok() {
             record.status = Status::Complete;
         }
@@ -95,9 +97,10 @@ impl<'a> Session<'a> {
     fn render(
         &mut self,
         task: &FrameTask,
-        assembled: &Assembled,
+        ready: &Ready,
         record: &mut FrameRecord,
     ) -> Result<(), RenderError> {
+        let Ready { assembled, identity } = ready;
         describe(record, assembled);
         let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
         record.left_out.extend(left_out.into_iter().map(Into::into));
@@ -128,10 +131,16 @@ impl<'a> Session<'a> {
             record.warnings.push(text);
         }
         let output = record.output.clone();
-        timed(&mut record.write_seconds, || self.write(&image, task.number, &output))
+        timed(&mut record.write_seconds, || self.write(&image, task.number, identity, &output))
     }
 
-    fn write(&self, image: &FrameImage, number: FrameNumber, path: &Path) -> Result<(), RenderError> {
+    fn write(
+        &self,
+        image: &FrameImage,
+        number: FrameNumber,
+        identity: &Identity,
+        path: &Path,
+    ) -> Result<(), RenderError> {
         let world = &self.job.world;
         let output = &world.description.output;
         let metadata = ImageMetadata {
@@ -139,14 +148,14 @@ impl<'a> Session<'a> {
             fps: world.frames().map_or(24.0, |f| f.fps),
             world_to_camera: world.camera.world_to_camera(world.origin),
             world_to_ndc: world.camera.world_to_ndc(world.origin),
-            attributes: self.attributes(number),
+            attributes: self.attributes(number, identity),
         };
         let png = output.png.then(|| path.with_extension("png"));
         Ok(write_frame(image, &metadata, path, png.as_deref(), &output.aovs, output.exposure)?)
     }
 
     /// The settings that made the picture.
-    fn attributes(&self, number: FrameNumber) -> Vec<(String, String)> {
+    fn attributes(&self, number: FrameNumber, identity: &Identity) -> Vec<(String, String)> {
         let lanes = match self.job.world.mode {
             LaneMode::Rgb => "rgb",
             LaneMode::Spectral => "spectral",
@@ -165,6 +174,10 @@ impl<'a> Session<'a> {
         .into_iter()
         .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
         .map(|(name, value)| (format!("floe:{name}"), value))
+        .chain([
+            (FINGERPRINT.into(), identity.fingerprint.to_string()),
+            (MESH_HASH.into(), identity.mesh_hash.clone()),
+        ])
         .collect()
     }
 }
@@ -186,16 +199,4 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.left_out.extend(assembled.reduced.iter().map(|reduced| {
         format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
     }));
-}
-
-fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescription {
-    RenderDescription {
-        samples: options.samples.unwrap_or(scene.samples),
-        seed: options.seed.unwrap_or(scene.seed),
-        ..scene.clone()
-    }
-}
-
-fn picture(pattern: &str, number: FrameNumber) -> PathBuf {
-    PathBuf::from(output_path(pattern, number))
 }

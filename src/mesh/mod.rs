@@ -26,7 +26,7 @@ mod weld;
 
 pub use error::{MeshError, Place};
 pub use prepare::{MeshWarning, prepare};
-pub use read::{FORMATS, Format, Syntax, read, read_bytes};
+pub use read::{FORMATS, Format, Syntax, parse, read, read_bytes};
 pub use weld::weld;
 
 use glam::{DVec3, Vec3};

@@ -65,16 +65,28 @@ impl Format {
 /// # Errors
 /// [`MeshError`] when the file cannot be read, its name promises no known format, or its contents are wrong.
 pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
-    let format = Format::of(path).ok_or_else(|| {
+    let format = promised(path)?;
+    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
+    read_bytes(&bytes, format, path)
+}
+
+/// As [`read`], from contents of the file that were read before.
+///
+/// # Errors
+/// [`MeshError`] when the file's name promises no known format, or the contents are wrong.
+pub fn parse(bytes: &[u8], path: &Path) -> Result<RawMesh, MeshError> {
+    read_bytes(bytes, promised(path)?, path)
+}
+
+fn promised(path: &Path) -> Result<Format, MeshError> {
+    Format::of(path).ok_or_else(|| {
         Fault::unsupported(
             Place::File,
             "the file name promises no known mesh format",
             "the known ones end with .ply, .obj or .dsc, each also with .gz behind it",
         )
         .in_file(path)
-    })?;
-    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
-    read_bytes(&bytes, format, path)
+    })
 }
 
 /// Reads a mesh from the contents of a file; `path` is only named in messages.

@@ -9,6 +9,7 @@ use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, medium_at};
 use super::geometry::Geometry;
+use super::inputs::Inputs;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
 use super::surface::{Surface, SurfaceId};
@@ -19,7 +20,7 @@ use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
 use crate::mesh::{self, Interface, RawMesh, Region, normals};
 use crate::optics::medium::{Medium, MediumId};
-use crate::sequence::{FrameNumber, frame_path, has_place};
+use crate::sequence::FrameNumber;
 use crate::spectrum::{Role, Spectrum, Wavelengths};
 use glam::Vec3;
 
@@ -73,10 +74,11 @@ impl World {
         mesh: Option<FrameMesh>,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
-        self.assemble_into(Buffers::default(), number, mesh, previous)
+        self.assemble_into(Buffers::default(), number, mesh, Inputs::default(), previous)
     }
 
-    /// As [`World::assemble`], in memory that is there; what was in it changes nothing.
+    /// As [`World::assemble`], in memory that is there; what was in it changes nothing. Files that are among the
+    /// `inputs` are not read again.
     ///
     /// # Errors
     /// Those of [`World::assemble`].
@@ -85,6 +87,7 @@ impl World {
         buffers: Buffers,
         number: FrameNumber,
         mesh: Option<FrameMesh>,
+        mut inputs: Inputs,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
         let Buffers { geometry, accel } = buffers;
@@ -92,11 +95,14 @@ impl World {
         if let Some(FrameMesh { path, mesh }) = mesh {
             assembly.add_frame(mesh, &path)?;
         }
-        for surface in self.description.surfaces.iter().filter(|s| has_place(&s.mesh)) {
-            let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
-            assembly.parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
+        for surface in self.surfaces_of_frame(number) {
+            let (surface, path) = surface?;
+            assembly.parts.add_surface(self, surface, inputs.mesh(&path)?, &path)?;
         }
-        Ok(assembly.finish(self.media_at(number)?, accel, previous))
+        let media = self.media_at(number, &mut inputs)?;
+        // The hierarchy takes its memory when that of the files is free again.
+        drop(inputs);
+        Ok(assembly.finish(media, accel, previous))
     }
 }
 

@@ -12,6 +12,7 @@ pub mod domain;
 pub mod error;
 pub mod frame;
 pub mod geometry;
+pub mod inputs;
 pub mod needs;
 mod parts;
 pub mod surface;

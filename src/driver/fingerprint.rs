@@ -1,0 +1,132 @@
+//! What a picture depends on, in 128 bits: whether it has to be drawn again is seen without drawing it.
+//!
+//! ```text
+//! fingerprint = first 128 bits of SHA-256(version of floe, scene, its files, frame number, the frame's files)
+//! ```
+//!
+//! The scene is what its file says with every default filled in, so comments and the order of keys do not count, and
+//! nothing that changes pixels can be forgotten here: what does not count is taken out by name. Files count by their
+//! contents, not by their dates. A billion pictures have two of one fingerprint by chance with a probability of
+//! (10^9)^2 / 2^129 = 1.5e-21. A processor with instructions for SHA-256 takes half a second for a gigabyte.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use sha2::{Digest, Sha256};
+
+use super::error::RenderError;
+use super::job::FrameTask;
+use crate::mesh::MeshError;
+use crate::scene::FrameError;
+use crate::scene::description::{OutputDescription, RenderDescription, SceneDescription};
+use crate::scene::inputs::{ContentHash, Inputs};
+use crate::scene::world::World;
+use crate::sequence::FrameNumber;
+
+/// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Fingerprint(pub [u8; 16]);
+
+impl fmt::Display for Fingerprint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&hexadecimal(&self.0))
+    }
+}
+
+/// The part of the fingerprints that all frames of a run have in common.
+#[derive(Clone, Debug)]
+pub struct Fingerprints {
+    common: Sha256,
+}
+
+impl Fingerprints {
+    /// Of a scene that is rendered with some settings in place of its own.
+    pub fn new(world: &World, settings: &RenderDescription) -> Self {
+        let mut common = Sha256::new();
+        add(&mut common, env!("CARGO_PKG_VERSION").as_bytes());
+        add(&mut common, what_counts(&world.description, settings).as_bytes());
+        add(&mut common, world.contents.as_flattened());
+        Self { common }
+    }
+
+    /// Of a frame whose own meshes, and the other files that only it is made of, have these contents.
+    pub fn of_frame(
+        &self,
+        number: FrameNumber,
+        meshes: &[ContentHash],
+        others: &[ContentHash],
+    ) -> Fingerprint {
+        let mut hasher = self.common.clone();
+        add(&mut hasher, &number.millionths().to_le_bytes());
+        add(&mut hasher, meshes.as_flattened());
+        add(&mut hasher, others.as_flattened());
+        let mut bits = [0; 16];
+        bits.copy_from_slice(&hasher.finalize()[..16]);
+        Fingerprint(bits)
+    }
+}
+
+/// The length goes first, so that no two lists of texts run into the same bytes.
+fn add(hasher: &mut Sha256, bytes: &[u8]) {
+    hasher.update((bytes.len() as u64).to_le_bytes());
+    hasher.update(bytes);
+}
+
+/// All that a scene says, but for where files are and what only the PNG shows.
+fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String {
+    let mut counts = scene.clone();
+    counts.render = settings.clone();
+    counts.file = PathBuf::new();
+    counts.directory = PathBuf::new();
+    if let Some(frames) = &mut counts.frames {
+        frames.path.clear();
+    }
+    let OutputDescription { mut aovs, .. } = counts.output;
+    aovs.sort_unstable();
+    aovs.dedup();
+    counts.output = OutputDescription { path: None, png: false, exposure: 0.0, aovs };
+    format!("{counts:?}")
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Which frame of which scene a picture is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// What the picture depends on.
+    pub fingerprint: Fingerprint,
+    /// SHA-256 of the bytes of the frame's own meshes, as `sha256sum` prints it, with a space between several.
+    pub mesh_hash: String,
+}
+
+/// The files of a frame as they were read, before anything is made of them.
+#[derive(Debug)]
+pub struct FrameSource {
+    /// The frame's own mesh; `None` for a still without `[frames]`.
+    pub mesh: Option<(PathBuf, Vec<u8>)>,
+    /// The other files.
+    pub inputs: Inputs,
+    /// What these bytes make of the picture.
+    pub identity: Identity,
+}
+
+impl FrameSource {
+    /// Reads the files of a frame.
+    ///
+    /// # Errors
+    /// When one of them cannot be read.
+    pub fn read(world: &World, fingerprints: &Fingerprints, task: &FrameTask) -> Result<Self, RenderError> {
+        let contents = |path: &PathBuf| match std::fs::read(path) {
+            Ok(bytes) => Ok((path.clone(), bytes)),
+            Err(source) => Err(FrameError::from(MeshError::Io { path: path.clone(), source })),
+        };
+        let mesh = task.file.as_ref().map(contents).transpose()?;
+        let inputs = Inputs::of_frame(world, task.number)?;
+        let meshes: Vec<ContentHash> = mesh.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect();
+        let fingerprint = fingerprints.of_frame(task.number, &meshes, &inputs.hashes());
+        let mesh_hash = meshes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
+        Ok(Self { mesh, inputs, identity: Identity { fingerprint, mesh_hash } })
+    }
+}
