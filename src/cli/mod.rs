@@ -6,6 +6,8 @@ mod progress;
 mod render;
 mod streams;
 mod summary;
+mod watch;
+mod watching;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -26,6 +28,8 @@ struct Arguments {
 enum Command {
     /// Render the frames of a scene file, or of a folder
     Render(render::RenderArguments),
+    /// Render frames as a simulation writes them
+    Watch(watch::WatchArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
 }
@@ -40,6 +44,7 @@ fn dispatch() -> Exit {
     match Arguments::try_parse() {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Watch(arguments) => watch::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
         },
         Err(error) => {

@@ -76,6 +76,6 @@ pub fn run(arguments: &RenderArguments) -> Exit {
 }
 
 /// A name for pictures; how many there will be is not known yet.
-fn output_pattern(text: &str) -> Result<String, RenderError> {
+pub(super) fn output_pattern(text: &str) -> Result<String, RenderError> {
     check_pictures(text, 1).map(|()| text.into())
 }

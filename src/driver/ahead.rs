@@ -39,12 +39,18 @@ pub(super) struct Pools {
 impl Pools {
     /// `threads` that render, all cores without a number, and the spare one.
     pub fn new(threads: Option<usize>) -> Result<Self, RenderError> {
-        let pool = |threads: usize| {
-            let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            built.map_err(|e| RenderError::Threads { threads, reason: e.to_string() })
-        };
-        Ok(Self { render: pool(threads.unwrap_or(0))?, spare: pool(1)? })
+        Ok(Self { render: Self::render_only(threads)?, spare: pool(1)? })
     }
+
+    /// Those that render alone.
+    pub fn render_only(threads: Option<usize>) -> Result<ThreadPool, RenderError> {
+        pool(threads.unwrap_or(0))
+    }
+}
+
+fn pool(threads: usize) -> Result<ThreadPool, RenderError> {
+    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    built.map_err(|e| RenderError::Threads { threads, reason: e.to_string() })
 }
 
 /// A frame that is ready, and which it is.

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use super::error::RenderError;
 use super::ready::{Readiness, Rules, Signature};
-use crate::sequence::{FrameNumber, SequenceError, discover, gaps, FrameFile};
+use crate::sequence::{FrameFile, FrameNumber, SequenceError, discover, gaps};
 
 /// Which frame is drawn first when several wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,8 +37,37 @@ pub(super) struct Arrival {
     pub drawn: Option<String>,
     /// The signature of the file that a preview was made of.
     pub previewed: Option<Signature>,
+    /// Whether its picture is being finished.
+    pub in_work: bool,
     /// Why there is no picture of the file as it is.
     pub failure: Option<RenderError>,
+    /// How often drawing the file as it is has failed.
+    pub failures: u32,
+}
+
+impl Arrival {
+    fn new(path: PathBuf, signature: Signature, now: Duration) -> Self {
+        Self {
+            path,
+            readiness: Readiness::new(signature, now),
+            drawn: None,
+            previewed: None,
+            in_work: false,
+            failure: None,
+            failures: 0,
+        }
+    }
+
+    /// Forgets what was wrong with the file that it was.
+    pub fn forgive(&mut self) {
+        self.failure = None;
+        self.failures = 0;
+    }
+
+    /// Whether it is drawn as it is, or told to be bad.
+    pub fn is_settled(&self) -> bool {
+        self.readiness.is_settled() && !self.in_work
+    }
 }
 
 /// All frames that are there.
@@ -78,6 +107,11 @@ impl Arrivals {
         if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder }
     }
 
+    /// Whether these are the frames of a pattern relative to a folder.
+    pub fn is_of(&self, base: &Path, pattern: &str) -> bool {
+        self.base == base && self.pattern == pattern
+    }
+
     /// When anything changed last.
     pub fn changed(&self) -> Duration {
         self.changed
@@ -88,9 +122,24 @@ impl Arrivals {
         self.frames.get_mut(&number)
     }
 
+    /// What the frames go by.
+    pub fn rules(&self) -> Rules {
+        self.rules
+    }
+
+    /// A file turned out to have changed.
+    pub fn touch(&mut self, now: Duration) {
+        self.changed = now;
+    }
+
     /// All frames in order.
     pub fn iter(&self) -> impl Iterator<Item = (&FrameNumber, &Arrival)> {
         self.frames.iter()
+    }
+
+    /// All frames in order, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (FrameNumber, &mut Arrival)> {
+        self.frames.iter_mut().map(|(number, arrival)| (*number, arrival))
     }
 
     /// Looks at names and signatures. Returns what the user has to know of the folder, once.
@@ -98,7 +147,8 @@ impl Arrivals {
     /// # Errors
     /// [`SequenceError::Pattern`]: no file will ever match.
     pub fn scan(&mut self, now: Duration) -> Result<Option<String>, SequenceError> {
-        let nothing = |error: &io::Error| matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory);
+        let nothing =
+            |error: &io::Error| matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory);
         match discover(&self.base, &self.pattern) {
             Ok(files) => {
                 self.trouble = None;
@@ -113,7 +163,8 @@ impl Arrivals {
             Err(SequenceError::Io { source, .. }) if nothing(&source) => Ok(None),
             Err(error @ SequenceError::Pattern { .. }) => Err(error),
             Err(error) => {
-                let known = self.frames.iter().map(|(number, a)| FrameFile { number: *number, path: a.path.clone() });
+                let known =
+                    self.frames.iter().map(|(number, a)| FrameFile { number: *number, path: a.path.clone() });
                 self.take(known.collect(), now);
                 Ok(self.complain(error.to_string(), now))
             }
@@ -152,15 +203,13 @@ impl Arrivals {
                 Some(arrival) => {
                     if arrival.readiness.seen(signature, now) {
                         any_change = true;
-                        arrival.failure = None;
+                        arrival.forgive();
                     }
                     arrival.path = path;
                 }
                 None => {
                     any_change = true;
-                    let readiness = Readiness::new(signature, now);
-                    let arrival = Arrival { path, readiness, drawn: None, previewed: None, failure: None };
-                    self.frames.insert(number, arrival);
+                    self.frames.insert(number, Arrival::new(path, signature, now));
                 }
             }
         }
@@ -200,13 +249,13 @@ impl Arrivals {
 
     /// Whether everything that is there is drawn, or told to be bad.
     pub fn is_settled(&self) -> bool {
-        self.frames.values().all(|arrival| arrival.readiness.is_settled())
+        self.frames.values().all(Arrival::is_settled)
     }
 
     /// Whether a frame is drawn as it is, and so is every one before it that is there and not bad.
     pub fn is_drawn_up_to(&self, last: FrameNumber) -> bool {
         self.frames.get(&last).is_some_and(|a| a.drawn.is_some() && a.failure.is_none())
-            && self.frames.range(..=last).all(|(_, arrival)| arrival.readiness.is_settled())
+            && self.frames.range(..=last).all(|(_, arrival)| arrival.is_settled())
     }
 
     /// Whether frames before `last` are not there that the steps of the others suggest.

@@ -35,6 +35,14 @@ pub enum RenderError {
         /// What was given.
         path: PathBuf,
     },
+    /// The scene has no frames that could come.
+    #[error(
+        "{scene}: there is no [frames] in it, so there is nothing to wait for; draw it with `floe render`"
+    )]
+    NothingToWatch {
+        /// The scene file.
+        scene: PathBuf,
+    },
     /// The scene that was written for a folder of this name is about another folder.
     #[error(
         "{scene}: its frames.path is `{frames}`, not in {folder}: it was written for another folder of the same name; \
@@ -121,7 +129,9 @@ impl RenderError {
             Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
             Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
-            Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
+            Self::NotExr { .. } | Self::OtherFolder { .. } | Self::NothingToWatch { .. } => {
+                Blame::Configuration
+            }
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(FrameError::NoMedium { .. }) => Blame::Configuration,
             Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),

@@ -124,9 +124,19 @@ impl FrameSource {
         };
         let mesh = task.file.as_ref().map(contents).transpose()?;
         let inputs = Inputs::of_frame(world, task.number)?;
+        Ok(Self::of(fingerprints, task.number, mesh, inputs))
+    }
+
+    /// A frame whose files have been read.
+    pub fn of(
+        fingerprints: &Fingerprints,
+        number: FrameNumber,
+        mesh: Option<(PathBuf, Vec<u8>)>,
+        inputs: Inputs,
+    ) -> Self {
         let meshes: Vec<ContentHash> = mesh.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect();
-        let fingerprint = fingerprints.of_frame(task.number, &meshes, &inputs.hashes());
+        let fingerprint = fingerprints.of_frame(number, &meshes, &inputs.hashes());
         let mesh_hash = meshes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
-        Ok(Self { mesh, inputs, identity: Identity { fingerprint, mesh_hash } })
+        Self { mesh, inputs, identity: Identity { fingerprint, mesh_hash } }
     }
 }

@@ -19,6 +19,8 @@ use crate::integrator::Counters;
 pub enum Status {
     /// The picture is there.
     Complete,
+    /// There is a PNG of few samples to look at; the picture is still to come.
+    Preview,
     /// There is no picture.
     Failed,
 }

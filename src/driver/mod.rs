@@ -16,6 +16,7 @@ pub mod ready;
 pub mod render;
 mod session;
 pub mod tiles;
+pub mod watch;
 pub mod whole;
 
 pub use error::RenderError;
@@ -25,3 +26,4 @@ pub use job::Job;
 pub use ledger::{FrameRecord, Status};
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

@@ -10,6 +10,7 @@ use super::interrupt::Interrupt;
 use super::job::{FrameTask, Job};
 use super::ledger::FrameRecord;
 use super::session::Session;
+use super::watch::WatchStatus;
 use crate::scene::description::RenderDescription;
 use crate::sequence::{
     FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps,
@@ -57,6 +58,10 @@ pub trait Observer: Sync {
     fn warning(&self, _text: &str) {}
     /// A frame is done, or has failed.
     fn finished(&self, _record: &FrameRecord) {}
+    /// The scene of frames that are waited for is opened.
+    fn opened(&self, _job: &Job) {}
+    /// What is going on while frames are waited for.
+    fn watching(&self, _status: &WatchStatus) {}
 }
 
 /// What became of a job.
@@ -101,7 +106,7 @@ pub fn render(
     let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
     let tried = one_ahead(&job.world, &fingerprints, &pools, &tasks, |task, prepared, preparation| {
         observer.frame(task.number);
-        let is_done = pools.render.install(|| session.turn(task, prepared, preparation));
+        let is_done = pools.render.install(|| session.turn(task, prepared, preparation)).is_some();
         is_done || options.keep_going
     });
     session.report.skipped = tasks.len() - tried;

@@ -75,32 +75,65 @@ impl<'a> Session<'a> {
         self.conclude(number, record, Err(error));
     }
 
-    /// Renders a frame that is ready, or tells what is wrong with it; true when its picture is there.
+    /// Renders a frame that is ready, or tells what is wrong with it. Its pixels, when its picture is there.
     pub fn turn(
         &mut self,
         task: &FrameTask,
         prepared: Result<&Ready, RenderError>,
         preparation: Preparation,
+    ) -> Option<FrameImage> {
+        let mut record = self.record(task, preparation);
+        let outcome = prepared.and_then(|ready| {
+            let image = self.trace(task, &ready.assembled, &mut record)?;
+            let output = record.output.clone();
+            timed(&mut record.write_seconds, || self.write(&image, task.number, &ready.identity, &output))?;
+            Ok(image)
+        });
+        if outcome.is_ok() {
+            record.status = Status::Complete;
+        }
+        let (image, outcome) = match outcome {
+            Ok(image) => (Some(image), Ok(())),
+            Err(error) => (None, Err(error)),
+        };
+        self.conclude(task.number, record, outcome).then_some(image).flatten()
+    }
+
+    /// Renders a frame without writing it; `shown` takes the pixels and puts them where they can be seen.
+    pub fn preview(
+        &mut self,
+        task: &FrameTask,
+        ready: &Ready,
+        preparation: Preparation,
+        shown: impl FnOnce(&FrameImage) -> Result<(), RenderError>,
     ) -> bool {
+        let mut record = self.record(task, preparation);
+        let outcome = self
+            .trace(task, &ready.assembled, &mut record)
+            .and_then(|image| timed(&mut record.write_seconds, || shown(&image)));
+        // What went wrong is told when the picture is to be finished.
+        if outcome.is_err() {
+            return false;
+        }
+        record.status = Status::Preview;
+        self.conclude(task.number, record, outcome)
+    }
+
+    fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
         let output = picture(&self.pattern, task.number);
         let mut record = FrameRecord::failed(task.number.to_string(), task.file.clone(), output);
         record.read_seconds = preparation.read_seconds;
         record.build_seconds = preparation.build_seconds;
         record.wait_seconds = preparation.wait_seconds;
-        let outcome = prepared.and_then(|ready| self.render(task, ready, &mut record));
-        if outcome.is_ok() {
-            record.status = Status::Complete;
-        }
-        self.conclude(task.number, record, outcome)
+        record
     }
 
-    fn render(
+    fn trace(
         &mut self,
         task: &FrameTask,
-        ready: &Ready,
+        assembled: &Assembled,
         record: &mut FrameRecord,
-    ) -> Result<(), RenderError> {
-        let Ready { assembled, identity } = ready;
+    ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
         let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
         record.left_out.extend(left_out.into_iter().map(Into::into));
@@ -130,8 +163,7 @@ impl<'a> Session<'a> {
             self.observer.warning(&text);
             record.warnings.push(text);
         }
-        let output = record.output.clone();
-        timed(&mut record.write_seconds, || self.write(&image, task.number, identity, &output))
+        Ok(image)
     }
 
     fn write(

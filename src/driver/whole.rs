@@ -59,14 +59,9 @@ pub fn inspect(bytes: &[u8], path: &Path, loose_before: Option<bool>) -> Result<
 }
 
 /// A format that says how long it is.
-fn inspect_counted(
-    bytes: &[u8],
-    mesh: RawMesh,
-    path: &Path,
-    zeros: usize,
-) -> Result<Inspected, MeshError> {
-    let unwritten = mesh.triangles.last() == Some(&[0; 3])
-        || mesh.positions.last_chunk::<2>() == Some(&[DVec3::ZERO; 2]);
+fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Result<Inspected, MeshError> {
+    let unwritten =
+        mesh.triangles.last() == Some(&[0; 3]) || mesh.positions.last_chunk::<2>() == Some(&[DVec3::ZERO; 2]);
     if zeros > 0 && unwritten {
         return Err(malformed(path, "its end is all zeros: allocated, but not written"));
     }

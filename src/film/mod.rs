@@ -40,4 +40,4 @@ pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, estimate_error};
 pub use filter::Filter;
 pub use frame_image::{FrameImage, Tile, TileRect, tiles};
 pub use metadata::ImageMetadata;
-pub use write_frame::write_frame;
+pub use write_frame::{png_bytes, write_frame};

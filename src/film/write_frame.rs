@@ -28,13 +28,20 @@ pub fn write_frame(
 ) -> Result<(), FilmError> {
     let exr = StagedFile::new(exr_path, &encode_exr(image, metadata, aovs, exr_path)?)?;
     if let Some(path) = png_path {
-        let bytes = encode_png(image, exposure).map_err(|error| FilmError::CannotEncode {
-            path: path.to_path_buf(),
-            width: image.width,
-            height: image.height,
-            reason: error.to_string(),
-        })?;
-        StagedFile::new(path, &bytes)?.commit()?;
+        StagedFile::new(path, &png_bytes(image, exposure, path)?)?.commit()?;
     }
     exr.commit()
+}
+
+/// The bytes of the PNG of a frame; `path` is only for messages.
+///
+/// # Errors
+/// [`FilmError::CannotEncode`] for a frame that the format cannot hold.
+pub fn png_bytes(image: &FrameImage, exposure: f32, path: &Path) -> Result<Vec<u8>, FilmError> {
+    encode_png(image, exposure).map_err(|error| FilmError::CannotEncode {
+        path: path.to_path_buf(),
+        width: image.width,
+        height: image.height,
+        reason: error.to_string(),
+    })
 }

@@ -1,0 +1,153 @@
+//! `floe watch`
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+
+use super::exit::Exit;
+use super::render::output_pattern;
+use super::streams::{print, say};
+use super::watching::Watching;
+use crate::driver::watch::{End, Order};
+use crate::driver::{Interrupt, RenderOptions, WatchOptions, WatchReport, watch};
+use crate::sequence::{FrameNumber, format_numbers};
+
+#[derive(Debug, Args)]
+pub struct WatchArguments {
+    /// A scene file, or a folder with scene.toml or with frames; folder and frames need not be there yet
+    scene: PathBuf,
+    /// Name of the pictures, such as shots/frame_####.exr (also %04d, $F4)
+    /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
+    #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
+    output: Option<String>,
+    /// Samples a pixel [default: render.samples of the scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    samples: Option<u32>,
+    /// Seed of every random number [default: render.seed of the scene]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Threads that render; as many more make previews [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Which frame is drawn first when several wait
+    #[arg(long, value_enum, default_value_t)]
+    order: Queue,
+    /// End when this frame is drawn, and those before it that are there
+    #[arg(long, value_name = "FRAME", allow_hyphen_values = true)]
+    until: Option<FrameNumber>,
+    /// End when all is drawn and nothing has changed for so long
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    idle_timeout: Option<Duration>,
+    /// End when all is drawn and this file is in the folder of the frames
+    #[arg(long, value_name = "NAME")]
+    done_file: Option<String>,
+    /// Samples a pixel of previews, 0 for none [default: a sixteenth of the samples, at least 4]
+    #[arg(long, value_name = "N")]
+    preview_samples: Option<u32>,
+    /// Look at the folder so often even if the system tells of no change
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "2")]
+    poll: Duration,
+    /// How long a file has to be unchanged; 4 times as long if it cannot prove that it is whole, 20 times if in doubt
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.5")]
+    settle: Duration,
+    /// Only warnings, errors and the summary
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Which frame is drawn first.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Queue {
+    /// The lowest number
+    #[default]
+    Oldest,
+    /// The one that was written last
+    Newest,
+}
+
+/// Renders what comes and says what became of it.
+pub fn run(arguments: &WatchArguments) -> Exit {
+    let interrupt = Interrupt::default();
+    let options = options(arguments, interrupt);
+    let watching = Watching::new(arguments.quiet);
+    let report = watch(&arguments.scene, &options, &watching);
+    watching.finish();
+    match report {
+        Ok(report) => {
+            let printed = print(&summary(&report));
+            report
+                .failures
+                .iter()
+                .map(|(_, error)| Exit::from(error))
+                .fold(printed.max(ended(&report)), Exit::max)
+        }
+        Err(error) => {
+            say(&format!("error: {error}"));
+            Exit::from(&error)
+        }
+    }
+}
+
+fn options(arguments: &WatchArguments, interrupt: Interrupt) -> WatchOptions {
+    WatchOptions {
+        render: RenderOptions {
+            output: arguments.output.clone(),
+            samples: arguments.samples,
+            seed: arguments.seed,
+            threads: arguments.threads.map(usize::from),
+            interrupt,
+            ..RenderOptions::default()
+        },
+        order: match arguments.order {
+            Queue::Oldest => Order::Oldest,
+            Queue::Newest => Order::Newest,
+        },
+        until: arguments.until,
+        idle_timeout: arguments.idle_timeout,
+        done_file: arguments.done_file.clone(),
+        preview_samples: arguments.preview_samples,
+        poll: arguments.poll,
+        quiet: arguments.settle,
+    }
+}
+
+/// Stopped while there was more to do is not the same as stopped.
+fn ended(report: &WatchReport) -> Exit {
+    match report.ended {
+        End::Interrupted if !report.pending.is_empty() || report.expected_more => Exit::Again,
+        _ => Exit::Complete,
+    }
+}
+
+fn summary(report: &WatchReport) -> String {
+    let why = match report.ended {
+        End::Until => "the last frame is drawn",
+        End::DoneFile => "the simulation is done",
+        End::Idle => "nothing has changed for a while",
+        End::Interrupted => "stopped",
+    };
+    let list = |what: &str, numbers: &[FrameNumber]| match numbers {
+        [] => String::new(),
+        numbers => format!("{what}: {}\n", format_numbers(numbers)),
+    };
+    let word = |n: usize| if n == 1 { "picture" } else { "pictures" };
+    let mut text =
+        format!("{why}: {} {} finished in {:.2} s\n", report.finished, word(report.finished), report.seconds);
+    text += &list("drawn", &report.drawn);
+    text += &list("failed", &report.failures.iter().map(|(number, _)| *number).collect::<Vec<_>>());
+    text += &list("not drawn yet", &report.pending);
+    match &report.places {
+        Some((pattern, ledger)) => text + &format!("pictures {pattern}; ledger {}\n", ledger.display()),
+        None => text,
+    }
+}
+
+/// A time above 0, up to a year.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let year = 3.2e7;
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds <= year => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err("write seconds above 0, such as 2 or 0.5".into()),
+    }
+}
