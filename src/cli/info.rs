@@ -9,10 +9,8 @@ use super::exit::Exit;
 use super::streams::{print, say};
 use crate::driver::{Job, RenderError};
 use crate::integrator::Integrator;
-use crate::mesh;
 use crate::optics::density::Density;
-use crate::scene::FrameError;
-use crate::scene::assembly::{Assembled, FrameMesh};
+use crate::scene::assembly::Assembled;
 use crate::scene::description::DensityDescription;
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
@@ -51,13 +49,7 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
     let integrator = Integrator::new(&job.world.description.render);
     let mut previous = None;
     for task in chosen {
-        let mesh = match &task.file {
-            Some(path) => {
-                Some(FrameMesh { path: path.clone(), mesh: mesh::read(path).map_err(FrameError::from)? })
-            }
-            None => None,
-        };
-        let assembled = job.world.assemble(task.number, mesh, previous.as_ref())?;
+        let assembled = job.world.assemble(task.number, task.read()?, previous.as_ref())?;
         *text += &describe_frame(&task.number.to_string(), &assembled, &integrator);
         previous = Some(assembled.frame);
     }

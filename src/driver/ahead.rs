@@ -5,7 +5,6 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
-use std::path::PathBuf;
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -13,9 +12,7 @@ use rayon::ThreadPool;
 use super::error::RenderError;
 use super::fingerprint::{Fingerprints, FrameSource, Identity};
 use super::job::FrameTask;
-use crate::mesh;
-use crate::scene::FrameError;
-use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
+use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::frame::Frame;
 use crate::scene::world::World;
 
@@ -119,22 +116,12 @@ fn prepare(
     buffers: Buffers,
 ) -> Outcome {
     let mut preparation = Preparation::default();
-    let read = || {
-        let FrameSource { mesh, inputs, identity } = FrameSource::read(world, fingerprints, task)?;
-        Ok((parsed(mesh)?, inputs, identity))
-    };
-    let outcome = timed(&mut preparation.read_seconds, read).and_then(|(mesh, inputs, identity)| {
-        let assemble = || world.assemble_into(buffers, task.number, mesh, inputs, previous);
+    let read = || FrameSource::read(world, fingerprints, task)?.parse();
+    let outcome = timed(&mut preparation.read_seconds, read).and_then(|(meshes, inputs, identity)| {
+        let assemble = || world.assemble_into(buffers, task.number, meshes, inputs, previous);
         Ok(Ready { assembled: timed(&mut preparation.build_seconds, assemble)?, identity })
     });
     (outcome, preparation)
-}
-
-/// The mesh in the very bytes that were hashed.
-fn parsed(file: Option<(PathBuf, Vec<u8>)>) -> Result<Option<FrameMesh>, RenderError> {
-    let Some((path, bytes)) = file else { return Ok(None) };
-    let mesh = mesh::parse(&bytes, &path).map_err(FrameError::from)?;
-    Ok(Some(FrameMesh { path, mesh }))
 }
 
 /// Adds the time that some work takes.

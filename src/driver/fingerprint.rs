@@ -16,8 +16,9 @@ use sha2::{Digest, Sha256};
 
 use super::error::RenderError;
 use super::job::FrameTask;
-use crate::mesh::MeshError;
+use crate::mesh::{self, MeshError};
 use crate::scene::FrameError;
+use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{OutputDescription, RenderDescription, SceneDescription};
 use crate::scene::inputs::{ContentHash, Inputs};
 use crate::scene::world::World;
@@ -104,10 +105,10 @@ pub struct Identity {
 /// The files of a frame as they were read, before anything is made of them.
 #[derive(Debug)]
 pub struct FrameSource {
-    /// The frame's own mesh; `None` for a still without `[frames]`.
-    pub mesh: Option<(PathBuf, Vec<u8>)>,
+    /// The frame's own meshes.
+    meshes: Vec<(PathBuf, Vec<u8>)>,
     /// The other files.
-    pub inputs: Inputs,
+    inputs: Inputs,
     /// What these bytes make of the picture.
     pub identity: Identity,
 }
@@ -122,21 +123,34 @@ impl FrameSource {
             Ok(bytes) => Ok((path.clone(), bytes)),
             Err(source) => Err(FrameError::from(MeshError::Io { path: path.clone(), source })),
         };
-        let mesh = task.file.as_ref().map(contents).transpose()?;
+        let meshes = task.files.iter().map(contents).collect::<Result<Vec<_>, _>>()?;
         let inputs = Inputs::of_frame(world, task.number)?;
-        Ok(Self::of(fingerprints, task.number, mesh, inputs))
+        Ok(Self::of(fingerprints, task.number, meshes, inputs))
     }
 
     /// A frame whose files have been read.
     pub fn of(
         fingerprints: &Fingerprints,
         number: FrameNumber,
-        mesh: Option<(PathBuf, Vec<u8>)>,
+        meshes: Vec<(PathBuf, Vec<u8>)>,
         inputs: Inputs,
     ) -> Self {
-        let meshes: Vec<ContentHash> = mesh.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect();
-        let fingerprint = fingerprints.of_frame(number, &meshes, &inputs.hashes());
-        let mesh_hash = meshes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
-        Self { mesh, inputs, identity: Identity { fingerprint, mesh_hash } }
+        let hashes: Vec<ContentHash> = meshes.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect();
+        let fingerprint = fingerprints.of_frame(number, &hashes, &inputs.hashes());
+        let mesh_hash = hashes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
+        Self { meshes, inputs, identity: Identity { fingerprint, mesh_hash } }
+    }
+
+    /// The meshes in the very bytes that were hashed, and the rest.
+    ///
+    /// # Errors
+    /// When a mesh is wrong.
+    pub fn parse(self) -> Result<(Vec<FrameMesh>, Inputs, Identity), RenderError> {
+        let parse = |(path, bytes): (PathBuf, Vec<u8>)| {
+            let mesh = mesh::parse(&bytes, &path).map_err(FrameError::from)?;
+            Ok(FrameMesh { path, mesh })
+        };
+        let meshes = self.meshes.into_iter().map(parse).collect::<Result<_, RenderError>>()?;
+        Ok((meshes, self.inputs, self.identity))
     }
 }

@@ -8,6 +8,7 @@ use super::error::RenderError;
 use crate::film::write::write_atomically;
 use crate::mesh::{self, RawMesh};
 use crate::scene::FrameError;
+use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
 use crate::scene::world::World;
@@ -34,8 +35,22 @@ pub struct Job {
 pub struct FrameTask {
     /// Its number.
     pub number: FrameNumber,
-    /// Its mesh; `None` for a still without `[frames]`.
-    pub file: Option<PathBuf>,
+    /// The meshes that are its own; none for a still without `[frames]`.
+    pub files: Vec<PathBuf>,
+}
+
+impl FrameTask {
+    /// Reads its meshes.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn read(&self) -> Result<Vec<FrameMesh>, RenderError> {
+        let read = |path: &PathBuf| {
+            let mesh = mesh::read(path).map_err(FrameError::from)?;
+            Ok(FrameMesh { path: path.clone(), mesh })
+        };
+        self.files.iter().map(read).collect()
+    }
 }
 
 impl Job {
@@ -86,9 +101,9 @@ impl Job {
     pub fn tasks(&self) -> Vec<FrameTask> {
         if self.world.frames().is_none() {
             let first = FrameNumber::from_integer(1).unwrap_or_default();
-            return vec![FrameTask { number: first, file: None }];
+            return vec![FrameTask { number: first, files: Vec::new() }];
         }
-        self.files.iter().map(|f| FrameTask { number: f.number, file: Some(f.path.clone()) }).collect()
+        self.files.iter().map(|f| FrameTask { number: f.number, files: vec![f.path.clone()] }).collect()
     }
 
     /// The frames of a selection, in order.
@@ -97,7 +112,10 @@ impl Job {
     /// [`SequenceError::NoneSelected`] when no frame is left.
     pub fn select(&self, selection: &FrameSelection) -> Result<Vec<FrameTask>, SequenceError> {
         let mut tasks = self.tasks();
-        let there = |t: &FrameTask| FrameFile { number: t.number, path: t.file.clone().unwrap_or_default() };
+        let there = |t: &FrameTask| FrameFile {
+            number: t.number,
+            path: t.files.first().cloned().unwrap_or_default(),
+        };
         let chosen = selection.select(&tasks.iter().map(there).collect::<Vec<_>>())?;
         tasks.retain(|t| chosen.iter().any(|f| f.number == t.number));
         Ok(tasks)

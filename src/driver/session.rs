@@ -121,7 +121,7 @@ impl<'a> Session<'a> {
 
     fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
         let output = picture(&self.pattern, task.number);
-        let mut record = FrameRecord::failed(task.number.to_string(), task.file.clone(), output);
+        let mut record = FrameRecord::failed(task.number.to_string(), task.files.first().cloned(), output);
         record.read_seconds = preparation.read_seconds;
         record.build_seconds = preparation.build_seconds;
         record.wait_seconds = preparation.wait_seconds;
@@ -150,7 +150,8 @@ impl<'a> Session<'a> {
         record.relative_error = estimate_error(&image, DEFAULT_CONFIDENCE).map(Into::into);
         if counters.too_many_mismatches() {
             let (mismatches, rays) = (counters.label_mismatches, counters.rays);
-            let path = task.file.clone().unwrap_or_else(|| self.job.world.description.file.clone());
+            let scene = &self.job.world.description.file;
+            let path = task.files.first().unwrap_or(scene).clone();
             if assembled.labelled {
                 return Err(RenderError::Mismatches { path, mismatches, rays });
             }

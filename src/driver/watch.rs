@@ -176,7 +176,7 @@ struct Workshop<'a> {
 impl<'a> Workshop<'a> {
     fn session(&self, samples: u32, observer: &'a dyn Observer) -> Result<Session<'a>, RenderError> {
         let options = RenderOptions { samples: Some(samples), ..self.options.render.clone() };
-        let first = super::job::FrameTask { number: FrameNumber::ONE, file: None };
+        let first = super::job::FrameTask { number: FrameNumber::ONE, files: Vec::new() };
         Session::new(self.job, &options, observer, self.pattern, &[first])
     }
 

@@ -71,10 +71,10 @@ impl World {
     pub fn assemble(
         &self,
         number: FrameNumber,
-        mesh: Option<FrameMesh>,
+        meshes: impl IntoIterator<Item = FrameMesh>,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
-        self.assemble_into(Buffers::default(), number, mesh, Inputs::default(), previous)
+        self.assemble_into(Buffers::default(), number, meshes, Inputs::default(), previous)
     }
 
     /// As [`World::assemble`], in memory that is there; what was in it changes nothing. Files that are among the
@@ -86,13 +86,13 @@ impl World {
         &self,
         buffers: Buffers,
         number: FrameNumber,
-        mesh: Option<FrameMesh>,
+        meshes: impl IntoIterator<Item = FrameMesh>,
         mut inputs: Inputs,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
         let Buffers { geometry, accel } = buffers;
         let mut assembly = Assembly::new(self, geometry);
-        if let Some(FrameMesh { path, mesh }) = mesh {
+        for FrameMesh { path, mesh } in meshes {
             assembly.add_frame(mesh, &path)?;
         }
         for surface in self.surfaces_of_frame(number) {

@@ -7,7 +7,6 @@ use floe::driver::tiles::{Sampling, render_pixels};
 use floe::film::FrameImage;
 use floe::integrator::Counters;
 use floe::sampling::SampleSeed;
-use floe::scene::assembly::FrameMesh;
 use floe::scene::frame::Frame;
 use glam::DVec3;
 
@@ -27,11 +26,8 @@ pub struct Rendered {
 pub fn prepare(file: &Path) -> Prepared {
     let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     let task = job.tasks().swap_remove(0);
-    let mesh = task.file.map(|path| {
-        let mesh = floe::mesh::read(&path).unwrap_or_else(|e| panic!("{e}"));
-        FrameMesh { path, mesh }
-    });
-    let assembled = job.world.assemble(task.number, mesh, None).unwrap_or_else(|e| panic!("{e}"));
+    let meshes = task.read().unwrap_or_else(|e| panic!("{e}"));
+    let assembled = job.world.assemble(task.number, meshes, None).unwrap_or_else(|e| panic!("{e}"));
     let mut sampling = Sampling::new(&job.world.description.render);
     sampling.seed.frame = task.number.millionths();
     Prepared { frame: assembled.frame, sampling }

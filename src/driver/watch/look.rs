@@ -177,9 +177,9 @@ impl<'a> Watch<'a> {
         let (bytes, source) = match Inputs::of_frame(&self.job.world, number) {
             Err(error) => (bytes, Err(error)),
             Ok(inputs) => {
-                let mesh = Some((path.clone(), bytes));
-                let mut source = FrameSource::of(&self.fingerprints, number, mesh, inputs);
-                (source.mesh.take().map(|(_, bytes)| bytes).unwrap_or_default(), Ok(source))
+                let meshes = vec![(path.clone(), bytes)];
+                let mut source = FrameSource::of(&self.fingerprints, number, meshes, inputs);
+                (source.meshes.pop().map(|(_, bytes)| bytes).unwrap_or_default(), Ok(source))
             }
         };
         if let Ok(FrameSource { identity, .. }) = &source
@@ -222,7 +222,7 @@ impl<'a> Watch<'a> {
             arrival.in_work = true;
         }
         let commission = Commission {
-            task: FrameTask { number, file: Some(path.clone()) },
+            task: FrameTask { number, files: vec![path.clone()] },
             mesh: FrameMesh { path, mesh: inspected.mesh },
             inputs: source.inputs,
             identity: source.identity,
@@ -238,7 +238,7 @@ impl<'a> Watch<'a> {
     /// A frame of which no worker will hear.
     fn fail(&mut self, number: FrameNumber, signature: Signature, error: RenderError) {
         let Some(arrival) = self.lookout.arrivals.get_mut(number) else { return };
-        let task = FrameTask { number, file: Some(arrival.path.clone()) };
+        let task = FrameTask { number, files: vec![arrival.path.clone()] };
         self.desk.turn(&task, Err(error), Preparation::default());
         self.desk.report.frames.clear();
         if let Some((_, error)) = self.desk.report.failures.pop() {

@@ -122,7 +122,7 @@ impl Easel<'_> {
                 timed(&mut preparation.build_seconds, || {
                     let before = previous.as_ref().map(|assembled| &assembled.frame);
                     let world = &self.job.world;
-                    world.assemble_into(Buffers::default(), task.number, Some(mesh), inputs, before)
+                    world.assemble_into(Buffers::default(), task.number, vec![mesh], inputs, before)
                 })
             });
             preparation.wait_seconds = preparation.read_seconds + preparation.build_seconds;
