@@ -106,9 +106,9 @@ pub struct Identity {
 #[derive(Debug)]
 pub struct FrameSource {
     /// The frame's own meshes.
-    meshes: Vec<(PathBuf, Vec<u8>)>,
+    pub(super) meshes: Vec<(PathBuf, Vec<u8>)>,
     /// The other files.
-    inputs: Inputs,
+    pub(super) inputs: Inputs,
     /// What these bytes make of the picture.
     pub identity: Identity,
 }
