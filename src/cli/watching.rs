@@ -95,10 +95,14 @@ impl Observer for Watching {
         let error =
             record.relative_error.map_or_else(String::new, |e| format!("error {:.2} %", 100.0 * e.estimate));
         let seconds = record.seconds();
+        let picture = match record.status {
+            Status::Preview => record.output.with_extension("png"),
+            _ => record.output.clone(),
+        };
         self.line(&format!(
             "{kind:<7} {:>6}  {seconds:>7.2} s  {error:<14}  {}",
             record.frame,
-            record.output.display()
+            picture.display()
         ));
     }
 }

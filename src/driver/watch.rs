@@ -160,6 +160,13 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
     })
 }
 
+/// A folder as a message names it: from where the user is.
+fn shown(folder: &Path) -> String {
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.into());
+    let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
+    whole.strip_prefix(&here).unwrap_or(&whole).display().to_string()
+}
+
 /// Samples of previews; none where they would not come much sooner than the picture.
 fn preview_samples(asked: Option<u32>, samples: u32) -> Option<u32> {
     let preview = asked.unwrap_or_else(|| (samples / 16).max(4));

@@ -143,3 +143,6 @@ fn malformed(path: &Path, problem: &str) -> MeshError {
         cure: "wait for its writer or write it again",
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::lookout::Lookout;
 use super::status::{Phase, Rate, WatchStatus};
 use super::worker::{Commission, Done, Tagged, Worker};
-use super::{End, WatchReport};
+use super::{End, WatchReport, shown};
 use crate::driver::ahead::Preparation;
 use crate::driver::arrivals::{Arrival, Came, read_signed};
 use crate::driver::error::{Blame, RenderError};
@@ -14,6 +14,7 @@ use crate::driver::fingerprint::{Fingerprints, FrameSource, Identity};
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::picture::{PictureState, picture_path};
 use crate::driver::ready::{Look, Proof, Signature, Verdict};
+use crate::driver::render::Observer;
 use crate::driver::session::Session;
 use crate::driver::whole::{Inspected, inspect};
 use crate::film::write::write_atomically;
@@ -230,7 +231,9 @@ impl<'a> Watch<'a> {
             came: (arrival.readiness.since(), number),
             read_seconds,
         };
-        if let Some(worker) = &mut self.benches[usize::from(preview)].0 {
+        let (worker, tagged) = &mut self.benches[usize::from(preview)];
+        tagged.frame(number);
+        if let Some(worker) = worker {
             worker.give(commission);
         }
     }
@@ -330,7 +333,7 @@ impl<'a> Watch<'a> {
         let phase = match reading {
             Some(number) => Phase::Reading(number),
             None if rendering.is_empty() => {
-                Phase::Waiting(format!("frames in {}", arrivals.folder().display()))
+                Phase::Waiting(format!("frames in {}", shown(&arrivals.folder())))
             }
             None => Phase::Rendering(rendering),
         };

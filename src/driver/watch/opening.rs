@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::lookout::Lookout;
 use super::status::{Phase, WatchStatus};
-use super::{End, WatchOptions};
+use super::{End, WatchOptions, shown};
 use crate::driver::arrivals::{Order, read_signed};
 use crate::driver::error::RenderError;
 use crate::driver::job::{Job, SceneFile, find_scene};
@@ -116,7 +116,7 @@ fn tell(lookout: &Lookout<'_>) {
     let wanted = if folder.is_dir() { "a whole frame in" } else { "the folder" };
     let failed = lookout.arrivals.iter().filter(|(_, arrival)| arrival.failure.is_some()).count();
     lookout.observer.watching(&WatchStatus {
-        phase: Phase::Waiting(format!("{wanted} {}", folder.display())),
+        phase: Phase::Waiting(format!("{wanted} {}", shown(&folder))),
         queue: lookout.arrivals.queue(lookout.now()),
         drawn: 0,
         failed,

@@ -114,7 +114,6 @@ impl Easel<'_> {
         let mut latest: Option<Assembled> = None;
         while let Ok(commission) = commissions.recv() {
             let Commission { task, mesh, inputs, identity, signature, came, read_seconds } = commission;
-            self.observer.frame(task.number);
             let mesh_hash = identity.mesh_hash.clone();
             let mut preparation = Preparation { read_seconds, ..Preparation::default() };
             let previous = latest.take();
