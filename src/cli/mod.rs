@@ -4,6 +4,8 @@ mod exit;
 mod info;
 mod progress;
 mod render;
+#[cfg(feature = "serve")]
+mod serve;
 mod streams;
 mod summary;
 mod watch;

@@ -10,7 +10,7 @@ use super::render::output_pattern;
 use super::streams::{print, say};
 use super::watching::Watching;
 use crate::driver::watch::{End, Order};
-use crate::driver::{Interrupt, RenderOptions, WatchOptions, WatchReport, watch};
+use crate::driver::{Interrupt, RenderError, RenderOptions, WatchOptions, WatchReport, watch};
 use crate::sequence::{FrameNumber, format_numbers};
 
 #[derive(Debug, Args)]
@@ -51,6 +51,14 @@ pub struct WatchArguments {
     /// How long a file has to be unchanged; 4 times as long if it cannot prove that it is whole, 20 times if in doubt
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.5")]
     settle: Duration,
+    /// Show it all on a page in a browser, at this port of this machine; 0 is one that is free
+    #[cfg(feature = "serve")]
+    #[arg(long, value_name = "PORT")]
+    serve: Option<u16>,
+    /// Listen at this address instead of that of this machine alone
+    #[cfg(feature = "serve")]
+    #[arg(long, value_name = "ADDRESS", requires = "serve", default_value = "127.0.0.1")]
+    serve_address: std::net::IpAddr,
     /// Only warnings, errors and the summary
     #[arg(long, short)]
     quiet: bool,
@@ -71,7 +79,10 @@ pub fn run(arguments: &WatchArguments) -> Exit {
     let interrupt = Interrupt::default();
     let options = options(arguments, interrupt);
     let watching = Watching::new(arguments.quiet);
-    let report = watch(&arguments.scene, &options, &watching);
+    let report = match served(arguments, &options, &watching) {
+        Ok(report) => report,
+        Err(exit) => return exit,
+    };
     watching.finish();
     match report {
         Ok(report) => {
@@ -87,6 +98,36 @@ pub fn run(arguments: &WatchArguments) -> Exit {
             Exit::from(&error)
         }
     }
+}
+
+/// How a watch ended, or how the command did that could not begin.
+type Outcome = Result<Result<WatchReport, RenderError>, Exit>;
+
+/// Watches, with a page if one is asked for.
+#[cfg(feature = "serve")]
+fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watching) -> Outcome {
+    use super::serve::{Board, Both, Server};
+    let Some(port) = arguments.serve else { return Ok(watch(&arguments.scene, options, watching)) };
+    let board = std::sync::Arc::new(Board::default());
+    let server = Server::start(arguments.serve_address, port, board.clone()).map_err(|reason| {
+        say(&format!(
+            "error: cannot serve at {}, port {port}: {reason}; choose another port",
+            arguments.serve_address
+        ));
+        Exit::CannotCreate
+    })?;
+    if !server.address.ip().is_loopback() {
+        say("warning: whoever reaches this machine can see the pictures");
+    }
+    say(&format!("page at http://{}/", server.address));
+    let both = Both { first: watching, board: &board };
+    Ok(watch(&arguments.scene, options, &both))
+}
+
+/// Watches.
+#[cfg(not(feature = "serve"))]
+fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watching) -> Outcome {
+    Ok(watch(&arguments.scene, options, watching))
 }
 
 fn options(arguments: &WatchArguments, interrupt: Interrupt) -> WatchOptions {

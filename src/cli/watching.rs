@@ -64,7 +64,7 @@ impl Watching {
 }
 
 impl Observer for Watching {
-    fn opened(&self, job: &Job) {
+    fn opened(&self, job: &Job, _: &str) {
         if let Some(scene) = &job.written_scene {
             self.line(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }

@@ -58,8 +58,8 @@ pub trait Observer: Sync {
     fn warning(&self, _text: &str) {}
     /// A frame is done, or has failed.
     fn finished(&self, _record: &FrameRecord) {}
-    /// The scene of frames that are waited for is opened.
-    fn opened(&self, _job: &Job) {}
+    /// The scene of frames that are waited for is opened; their pictures have names of a pattern.
+    fn opened(&self, _job: &Job, _pattern: &str) {}
     /// What is going on while frames are waited for.
     fn watching(&self, _status: &WatchStatus) {}
 }

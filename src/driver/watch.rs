@@ -122,10 +122,7 @@ pub fn watch(
 ) -> Result<WatchReport, RenderError> {
     let start = std::time::Instant::now();
     let mut report = match opening::open(path, options, observer)? {
-        Ok((job, lookout)) => {
-            observer.opened(&job);
-            with_workers(&job, lookout)?
-        }
+        Ok((job, lookout)) => with_workers(&job, lookout)?,
         Err(ended) => WatchReport {
             ended,
             drawn: Vec::new(),
@@ -145,6 +142,7 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
     let (options, observer) = (lookout.options, lookout.observer);
     let pattern = options.render.output.clone().unwrap_or_else(|| job.output_pattern());
     check_pictures(&pattern, 2)?;
+    observer.opened(job, &pattern);
     let workshop = Workshop { job, options, pattern: &pattern };
     let finishing = Tagged::new(observer, false);
     let previewing = Tagged::new(observer, true);

@@ -9,7 +9,7 @@
 //! | PLY, vertices before faces | too few elements; faces of no corners | proven |
 //! | ... its last byte is 0 | maybe the last face, partly unwritten | plausible |
 //! | ... as text, without a line break at its end | maybe the last number lacks digits | plausible |
-//! | ... ends with 64 zeros or more | maybe elements behind the faces | doubtful |
+//! | ... ends with 64 zeros or more, or with a vertex of zeros | maybe what is behind the faces | doubtful |
 //! | ... last triangle or last two vertices all zero | unwritten | unreadable |
 //! | OBJ, `.dsc` | fewer faces | plausible |
 //! | ... without a line break at its end | a number that lacks digits | doubtful |
@@ -66,9 +66,11 @@ fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Re
         return Err(malformed(path, "its end is all zeros: allocated, but not written"));
     }
     let head = &bytes[..bytes.len().min(1024)];
-    let is_text = head.windows(12).any(|words| words == b"format ascii");
-    let cut = is_text && !bytes.ends_with(b"\n");
-    let doubt = (zeros >= ZERO_TAIL).then(|| format!("{zeros} zeros at its end"));
+    let place = |words: &[u8]| head.windows(words.len()).position(|found| found == words);
+    let cut = place(b"format ascii").is_some() && !bytes.ends_with(b"\n");
+    let vertices_last = place(b"element vertex") > place(b"element face");
+    let last_is_zero = vertices_last && mesh.positions.last() == Some(&DVec3::ZERO);
+    let doubt = (zeros >= ZERO_TAIL || last_is_zero).then(|| format!("{zeros} zeros at its end"));
     let proof = match (&doubt, zeros > 0 || cut) {
         (Some(_), _) => Proof::Doubtful,
         (None, true) => Proof::Plausible,
