@@ -1,9 +1,14 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
+mod duration;
 mod exit;
 mod info;
 mod progress;
 mod render;
+mod settings;
+#[cfg(unix)]
+mod signals;
+mod status;
 mod streams;
 mod summary;
 
@@ -26,6 +31,8 @@ struct Arguments {
 enum Command {
     /// Render the frames of a scene file, or of a folder
     Render(render::RenderArguments),
+    /// Print which frames are there, missing, begun, out of date or damaged
+    Status(status::StatusArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
 }
@@ -40,6 +47,7 @@ fn dispatch() -> Exit {
     match Arguments::try_parse() {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
         },
         Err(error) => {
