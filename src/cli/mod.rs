@@ -1,11 +1,16 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
+mod duration;
 mod exit;
 mod info;
 mod progress;
 mod render;
 #[cfg(feature = "serve")]
 mod serve;
+mod settings;
+#[cfg(unix)]
+mod signals;
+mod status;
 mod streams;
 mod summary;
 mod watch;
@@ -32,6 +37,8 @@ enum Command {
     Render(render::RenderArguments),
     /// Render frames as a simulation writes them
     Watch(watch::WatchArguments),
+    /// Print which frames are there, missing, begun, out of date or damaged
+    Status(status::StatusArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
 }
@@ -47,6 +54,7 @@ fn dispatch() -> Exit {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
             Command::Watch(arguments) => watch::run(&arguments),
+            Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
         },
         Err(error) => {

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
+use super::duration::duration;
 use super::exit::Exit;
-use super::render::output_pattern;
+use super::settings::output_pattern;
 use super::streams::{print, say};
 use super::watching::Watching;
 use crate::driver::watch::{End, Order};
@@ -37,7 +38,7 @@ pub struct WatchArguments {
     #[arg(long, value_name = "FRAME", allow_hyphen_values = true)]
     until: Option<FrameNumber>,
     /// End when all is drawn and nothing has changed for so long
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "TIME", value_parser = time)]
     idle_timeout: Option<Duration>,
     /// End when all is drawn and this file is in the folder of the frames
     #[arg(long, value_name = "NAME")]
@@ -46,10 +47,10 @@ pub struct WatchArguments {
     #[arg(long, value_name = "N")]
     preview_samples: Option<u32>,
     /// Look at the folder so often even if the system tells of no change
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "2")]
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "2")]
     poll: Duration,
     /// How long a file has to be unchanged; 4 times as long if it cannot prove that it is whole, 20 times if in doubt
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.5")]
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "0.5")]
     settle: Duration,
     /// Show it all on a page in a browser, at this port of this machine; 0 is one that is free
     #[cfg(feature = "serve")]
@@ -77,6 +78,8 @@ enum Queue {
 /// Renders what comes and says what became of it.
 pub fn run(arguments: &WatchArguments) -> Exit {
     let interrupt = Interrupt::default();
+    #[cfg(unix)]
+    super::signals::obey(&interrupt);
     let options = options(arguments, interrupt);
     let watching = Watching::new(arguments.quiet);
     let report = match served(arguments, &options, &watching) {
@@ -138,7 +141,7 @@ fn options(arguments: &WatchArguments, interrupt: Interrupt) -> WatchOptions {
             seed: arguments.seed,
             threads: arguments.threads.map(usize::from),
             interrupt,
-            ..RenderOptions::default()
+            ..WatchOptions::default().render
         },
         order: match arguments.order {
             Queue::Oldest => Order::Oldest,
@@ -156,7 +159,7 @@ fn options(arguments: &WatchArguments, interrupt: Interrupt) -> WatchOptions {
 /// Stopped while there was more to do is not the same as stopped.
 fn ended(report: &WatchReport) -> Exit {
     match report.ended {
-        End::Interrupted if !report.pending.is_empty() || report.expected_more => Exit::Again,
+        End::Interrupted if !report.pending.is_empty() || report.expected_more => Exit::Interrupted,
         _ => Exit::Complete,
     }
 }
@@ -184,11 +187,8 @@ fn summary(report: &WatchReport) -> String {
     }
 }
 
-/// A time above 0, up to a year.
-fn seconds(text: &str) -> Result<Duration, String> {
-    let year = 3.2e7;
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= year => Ok(Duration::from_secs_f64(seconds)),
-        _ => Err("write seconds above 0, such as 2 or 0.5".into()),
-    }
+/// A time above 0.
+fn time(text: &str) -> Result<Duration, String> {
+    let time = duration(text)?;
+    if time.is_zero() { Err("it has to be above 0".into()) } else { Ok(time) }
 }

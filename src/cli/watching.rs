@@ -89,6 +89,7 @@ impl Observer for Watching {
                 return self.line(&format!("error: frame {}: {error}", record.frame));
             }
             _ if self.quiet => return,
+            Status::Interrupted => return self.line(&format!("frame {} is not done yet", record.frame)),
             Status::Preview => "preview",
             Status::Complete => "frame",
         };

@@ -60,15 +60,14 @@ pub(super) struct Ready {
 /// A frame that is ready, or what is wrong with it.
 type Outcome = (Result<Ready, RenderError>, Preparation);
 
-/// Gives `turn` each task in order with its frame, while the next one is made ready; stops when it returns false. Returns
-/// how many had their turn.
+/// Gives `turn` each task in order with its frame, while the next one is made ready; stops when it returns false.
 pub(super) fn one_ahead(
     world: &World,
     fingerprints: &Fingerprints,
     pools: &Pools,
     tasks: &[FrameTask],
     mut turn: impl FnMut(&FrameTask, Result<&Ready, RenderError>, Preparation) -> bool,
-) -> usize {
+) {
     let mut latest: Option<Ready> = None;
     let mut next: Option<Outcome> = None;
     let mut waiting = Instant::now();
@@ -102,10 +101,9 @@ pub(super) fn one_ahead(
             }
         };
         if !goes_on {
-            return i + 1;
+            return;
         }
     }
-    tasks.len()
 }
 
 fn prepare(

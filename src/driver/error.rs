@@ -95,6 +95,9 @@ pub enum RenderError {
         /// Of how many.
         rays: u64,
     },
+    /// The run was asked to stop.
+    #[error("interrupted; what is done is kept, and the same command with --resume goes on")]
+    Interrupted,
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -120,6 +123,8 @@ pub enum Blame {
     CannotWrite,
     /// The program or the machine.
     Internal,
+    /// Whoever stopped the run.
+    Interrupted,
 }
 
 impl RenderError {
@@ -140,6 +145,7 @@ impl RenderError {
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
             Self::Threads { .. } => Blame::Internal,
+            Self::Interrupted => Blame::Interrupted,
         }
     }
 }

@@ -1,13 +1,14 @@
 //! What signals ask of a run: to stop, or to save how far it has come.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Requests to a run. Clones are the same requests, so that one may be kept where signals are caught.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     stop: Arc<AtomicBool>,
     save: Arc<AtomicBool>,
+    writers: Arc<AtomicUsize>,
 }
 
 impl Interrupt {
@@ -26,18 +27,26 @@ impl Interrupt {
         self.save.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the frame is to be saved; the request is done with then.
-    pub fn take_save(&self) -> bool {
-        self.save.load(Ordering::Relaxed) && self.save.swap(false, Ordering::Relaxed)
+    /// Whether the frame is to be saved.
+    pub(super) fn wants_save(&self) -> bool {
+        self.save.load(Ordering::Relaxed)
     }
 
-    /// The flag that [`request`](Self::request) sets, for handlers of signals.
-    pub fn stop_flag(&self) -> Arc<AtomicBool> {
-        self.stop.clone()
+    /// The frame is saved.
+    pub(super) fn has_saved(&self) {
+        self.save.store(false, Ordering::Relaxed);
     }
 
-    /// The flag that [`request_save`](Self::request_save) sets, for handlers of signals.
-    pub fn save_flag(&self) -> Arc<AtomicBool> {
-        self.save.clone()
+    /// Does what a process that must end soon had better wait for.
+    pub(super) fn while_writing<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.writers.fetch_add(1, Ordering::SeqCst);
+        let result = work();
+        self.writers.fetch_sub(1, Ordering::SeqCst);
+        result
+    }
+
+    /// True while a picture or a checkpoint is being written.
+    pub fn is_writing(&self) -> bool {
+        self.writers.load(Ordering::SeqCst) > 0
     }
 }

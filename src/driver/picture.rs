@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::fingerprint::{Fingerprint, Identity};
 use crate::film::exr_seal::{check_seal, text_attribute};
+use crate::scene::description::SceneDescription;
 use crate::sequence::{FrameNumber, output_path};
 
 /// Name of the attribute with the fingerprint.
@@ -55,6 +56,11 @@ pub fn read_identity(path: &Path) -> Option<Identity> {
     let bits = u128::from_str_radix(digits, 16).ok()?.to_be_bytes();
     let mesh_hash = text_attribute(&header, MESH_HASH)?.to_owned();
     (digits.len() == 32).then_some(Identity { fingerprint: Fingerprint(bits), mesh_hash })
+}
+
+/// Where the PNG of a picture is, if the scene wants any.
+pub(super) fn png_path(scene: &SceneDescription, picture: &Path) -> Option<PathBuf> {
+    scene.output.png.then(|| picture.with_extension("png"))
 }
 
 /// Where the picture of a frame is.

@@ -2,24 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
+use super::accumulation::Accumulation;
 use super::ahead::{Preparation, Ready, timed};
+use super::checkpoint::Checkpoint;
 use super::error::RenderError;
 use super::fingerprint::Identity;
 use super::job::{FrameTask, Job};
+use super::keeper::Keeper;
 use super::ledger::{FrameRecord, Ledger, Status};
-use super::picture::{FINGERPRINT, MESH_HASH, picture_path as picture};
+use super::picture::{FINGERPRINT, MESH_HASH, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
-use super::tiles::{Sampling, render_pixels};
+use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
+use crate::film::write::remove_abandoned;
 use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::integrator::Counters;
 use crate::scene::assembly::Assembled;
 use crate::scene::description::RenderDescription;
+use crate::scene::frame::Frame;
 use crate::sequence::FrameNumber;
 use crate::spectrum::LaneMode;
 
 /// The frames of one run: their settings, and what has become of them.
 pub(super) struct Session<'a> {
     job: &'a Job,
+    options: &'a RenderOptions,
     pattern: String,
     settings: RenderDescription,
     sampling: Sampling,
@@ -31,7 +38,7 @@ pub(super) struct Session<'a> {
 impl<'a> Session<'a> {
     pub fn new(
         job: &'a Job,
-        options: &RenderOptions,
+        options: &'a RenderOptions,
         observer: &'a dyn Observer,
         pattern: &str,
         tasks: &[FrameTask],
@@ -39,8 +46,11 @@ impl<'a> Session<'a> {
         let settings = options.settings(&job.world.description.render);
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
+        remove_abandoned(&first_picture);
         let report = RenderReport {
             frames: Vec::new(),
+            already: Vec::new(),
+            interrupted: false,
             failures: Vec::new(),
             skipped: 0,
             seconds: 0.0,
@@ -48,7 +58,7 @@ impl<'a> Session<'a> {
             ledger: ledger.path().into(),
         };
         let sampling = Sampling::new(&settings);
-        Ok(Self { job, pattern: pattern.into(), settings, sampling, ledger, report, observer })
+        Ok(Self { job, options, pattern: pattern.into(), settings, sampling, ledger, report, observer })
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -64,8 +74,11 @@ impl<'a> Session<'a> {
         record.error = outcome.as_ref().err().map(ToString::to_string);
         self.observer.finished(&record);
         self.report.frames.push(record);
-        let Err(error) = outcome else { return true };
-        self.report.failures.push((number, error));
+        match outcome {
+            Ok(()) => return true,
+            Err(RenderError::Interrupted) => self.report.interrupted = true,
+            Err(error) => self.report.failures.push((number, error)),
+        }
         false
     }
 
@@ -84,14 +97,23 @@ impl<'a> Session<'a> {
     ) -> Option<FrameImage> {
         let mut record = self.record(task, preparation);
         let outcome = prepared.and_then(|ready| {
-            let image = self.trace(task, &ready.assembled, &mut record)?;
             let output = record.output.clone();
-            timed(&mut record.write_seconds, || self.write(&image, task.number, &ready.identity, &output))?;
+            let checkpoint = Checkpoint::of(&output, ready.identity.fingerprint);
+            let traced = self.trace(task, &ready.assembled, Some(&checkpoint), &mut record);
+            if let Err(RenderError::Mismatches { .. }) = traced {
+                checkpoint.remove();
+            }
+            let image = traced?;
+            let write = || self.write(&image, task.number, &ready.identity, &output);
+            timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
+            checkpoint.remove();
             Ok(image)
         });
-        if outcome.is_ok() {
-            record.status = Status::Complete;
-        }
+        record.status = match outcome {
+            Ok(_) => Status::Complete,
+            Err(RenderError::Interrupted) => Status::Interrupted,
+            Err(_) => Status::Failed,
+        };
         let (image, outcome) = match outcome {
             Ok(image) => (Some(image), Ok(())),
             Err(error) => (None, Err(error)),
@@ -109,7 +131,7 @@ impl<'a> Session<'a> {
     ) -> bool {
         let mut record = self.record(task, preparation);
         let outcome = self
-            .trace(task, &ready.assembled, &mut record)
+            .trace(task, &ready.assembled, None, &mut record)
             .and_then(|image| timed(&mut record.write_seconds, || shown(&image)));
         // What went wrong is told when the picture is to be finished.
         if outcome.is_err() {
@@ -132,6 +154,7 @@ impl<'a> Session<'a> {
         &mut self,
         task: &FrameTask,
         assembled: &Assembled,
+        checkpoint: Option<&Checkpoint>,
         record: &mut FrameRecord,
     ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
@@ -141,10 +164,8 @@ impl<'a> Session<'a> {
             self.observer.warning(warning);
         }
         self.sampling.seed.frame = task.number.millionths();
-        let observer = self.observer;
-        let (image, counters) = timed(&mut record.render_seconds, || {
-            render_pixels(&assembled.frame, &self.sampling, &|done, of| observer.tiles(done, of))
-        });
+        let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
+        let (image, counters) = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
         record.samples = image.samples();
         record.relative_error = estimate_error(&image, DEFAULT_CONFIDENCE).map(Into::into);
@@ -167,6 +188,25 @@ impl<'a> Session<'a> {
         Ok(image)
     }
 
+    /// Draws a frame, or goes on with one that has a checkpoint; `None` when the run is to stop before it is done.
+    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Option<(FrameImage, Counters)> {
+        let mut accumulation = Accumulation::new(frame.camera.resolution());
+        if self.options.resume
+            && let Some(Err(reason)) = checkpoint.map(|checkpoint| checkpoint.load(&mut accumulation))
+        {
+            self.observer.warning(&reason);
+        }
+        let RenderOptions { interrupt, checkpoint_every, .. } = self.options;
+        let keeper = Keeper::new(self.observer, interrupt, checkpoint, *checkpoint_every);
+        if accumulate(&mut accumulation, frame, &self.sampling, &keeper) {
+            return Some(accumulation.finish());
+        }
+        if accumulation.is_begun() {
+            keeper.save(&accumulation);
+        }
+        None
+    }
+
     fn write(
         &self,
         image: &FrameImage,
@@ -183,8 +223,14 @@ impl<'a> Session<'a> {
             world_to_ndc: world.camera.world_to_ndc(world.origin),
             attributes: self.attributes(number, identity),
         };
-        let png = output.png.then(|| path.with_extension("png"));
-        Ok(write_frame(image, &metadata, path, png.as_deref(), &output.aovs, output.exposure)?)
+        Ok(write_frame(
+            image,
+            &metadata,
+            path,
+            png_path(&self.job.world.description, path).as_deref(),
+            &output.aovs,
+            output.exposure,
+        )?)
     }
 
     /// The settings that made the picture.

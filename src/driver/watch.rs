@@ -29,7 +29,7 @@ use self::wake::News;
 use self::worker::{Easel, Tagged, Worker};
 use super::ahead::Pools;
 use super::error::RenderError;
-use super::job::Job;
+use super::job::{FrameTask, Job};
 use super::render::{Observer, RenderOptions, check_pictures};
 use super::session::Session;
 use crate::sequence::FrameNumber;
@@ -37,7 +37,7 @@ use crate::sequence::FrameNumber;
 /// What a watch is asked for.
 #[derive(Clone, Debug)]
 pub struct WatchOptions {
-    /// What the pictures are asked for; `frames` and `keep_going` have no meaning here.
+    /// What the pictures are asked for; `frames`, `keep_going` and `resume` have no meaning here.
     pub render: RenderOptions,
     /// Which frame is drawn first when several wait.
     pub order: Order,
@@ -58,7 +58,10 @@ pub struct WatchOptions {
 impl Default for WatchOptions {
     fn default() -> Self {
         Self {
-            render: RenderOptions::default(),
+            render: RenderOptions {
+                checkpoint_every: Some(Duration::from_secs(300)),
+                ..RenderOptions::default()
+            },
             order: Order::default(),
             until: None,
             idle_timeout: None,
@@ -143,17 +146,20 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
     let pattern = options.render.output.clone().unwrap_or_else(|| job.output_pattern());
     check_pictures(&pattern, 2)?;
     observer.opened(job, &pattern);
-    let workshop = Workshop { job, options, pattern: &pattern };
+    let samples = options.render.settings(&job.world.description.render).samples;
+    let previews = preview_samples(options.preview_samples, samples);
+    let finished_options = RenderOptions { samples: Some(samples), resume: true, ..options.render.clone() };
+    let preview_options = RenderOptions { samples: previews, ..options.render.clone() };
+    let workshop = Workshop { job, pattern: &pattern };
     let finishing = Tagged::new(observer, false);
     let previewing = Tagged::new(observer, true);
     std::thread::scope(|scope| {
-        let samples = options.render.settings(&job.world.description.render).samples;
-        let picture = workshop.worker(scope, samples, &finishing, lookout.sender())?;
-        let preview = match preview_samples(options.preview_samples, samples) {
-            Some(samples) => Some(workshop.worker(scope, samples, &previewing, lookout.sender())?),
+        let picture = workshop.worker(scope, &finished_options, &finishing, lookout.sender())?;
+        let preview = match previews {
+            Some(_) => Some(workshop.worker(scope, &preview_options, &previewing, lookout.sender())?),
             None => None,
         };
-        let desk = workshop.session(samples, observer)?;
+        let desk = workshop.session(&finished_options, observer)?;
         Watch::new(job, lookout, &pattern, desk, [(Some(picture), &finishing), (preview, &previewing)]).run()
     })
 }
@@ -174,29 +180,31 @@ fn preview_samples(asked: Option<u32>, samples: u32) -> Option<u32> {
 /// What workers are made of.
 struct Workshop<'a> {
     job: &'a Job,
-    options: &'a WatchOptions,
     pattern: &'a str,
 }
 
 impl<'a> Workshop<'a> {
-    fn session(&self, samples: u32, observer: &'a dyn Observer) -> Result<Session<'a>, RenderError> {
-        let options = RenderOptions { samples: Some(samples), ..self.options.render.clone() };
-        let first = super::job::FrameTask { number: FrameNumber::ONE, files: Vec::new() };
-        Session::new(self.job, &options, observer, self.pattern, &[first])
+    fn session(
+        &self,
+        options: &'a RenderOptions,
+        observer: &'a dyn Observer,
+    ) -> Result<Session<'a>, RenderError> {
+        let first = FrameTask { number: FrameNumber::ONE, files: Vec::new() };
+        Session::new(self.job, options, observer, self.pattern, &[first])
     }
 
     fn worker<'scope>(
         &self,
         scope: &'scope Scope<'scope, '_>,
-        samples: u32,
+        options: &'a RenderOptions,
         observer: &'a Tagged<'a>,
         news: Sender<News>,
     ) -> Result<Worker, RenderError>
     where
         'a: 'scope,
     {
-        let session = self.session(samples, observer)?;
-        let pool = Pools::render_only(self.options.render.threads)?;
+        let session = self.session(options, observer)?;
+        let pool = Pools::render_only(options.threads)?;
         Ok(Worker::start(
             scope,
             Easel { job: self.job, session, pattern: self.pattern, pool, observer },

@@ -15,6 +15,7 @@ use crate::driver::job::{FrameTask, Job};
 use crate::driver::picture::{PictureState, picture_path};
 use crate::driver::ready::{Look, Proof, Signature, Verdict};
 use crate::driver::render::Observer;
+use crate::driver::resume::add_missing_png;
 use crate::driver::session::Session;
 use crate::driver::whole::{Inspected, inspect};
 use crate::film::write::write_atomically;
@@ -190,6 +191,9 @@ impl<'a> Watch<'a> {
                 arrival.drawn = Some(identity.mesh_hash.clone());
                 arrival.forgive();
                 let came = (arrival.readiness.since(), number);
+                if let Err(error) = add_missing_png(self.job, &picture_path(self.pattern, number)) {
+                    self.lookout.observer.warning(&error.to_string());
+                }
                 self.show(came, None);
             }
             return None;
@@ -267,6 +271,10 @@ impl<'a> Watch<'a> {
         let now = self.lookout.now();
         if let Some(arrival) = self.lookout.arrivals.get_mut(done.number).filter(|_| !done.preview) {
             arrival.in_work = false;
+            if done.outcome.is_none() {
+                // It was to stop: whatever picture is there is of what the file was before.
+                arrival.drawn = None;
+            }
             if let Some(Ok(_)) = done.outcome {
                 arrival.drawn = Some(done.mesh_hash);
                 arrival.readiness.drawn(done.signature);
