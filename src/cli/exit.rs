@@ -8,7 +8,8 @@ use crate::driver::error::Blame;
 /// The end of the help text.
 pub(super) const HELP: &str = "\
 Exit codes: 0 all is there, 2 usage, 65 bad input data, 66 input missing, 70 internal error,
-73 cannot create or 74 cannot write an output, 78 bad scene file; the greatest of several.";
+73 cannot create or 74 cannot write an output, 75 interrupted (run it again with --resume),
+78 bad scene file; the greatest of several.";
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,6 +29,8 @@ pub enum Exit {
     CannotCreate = 73,
     /// An output file cannot be written.
     CannotWrite = 74,
+    /// It was asked to stop, or frames are not there yet: the same command with `--resume` goes on.
+    Interrupted = 75,
     /// The scene file is wrong.
     Configuration = 78,
 }
@@ -47,6 +50,7 @@ impl From<&RenderError> for Exit {
             Blame::CannotCreate => Self::CannotCreate,
             Blame::CannotWrite => Self::CannotWrite,
             Blame::Internal => Self::Internal,
+            Blame::Interrupted => Self::Interrupted,
         }
     }
 }

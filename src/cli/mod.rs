@@ -1,11 +1,20 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
+mod duration;
 mod exit;
 mod info;
 mod progress;
 mod render;
+#[cfg(feature = "serve")]
+mod serve;
+mod settings;
+#[cfg(unix)]
+mod signals;
+mod status;
 mod streams;
 mod summary;
+mod watch;
+mod watching;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -26,6 +35,10 @@ struct Arguments {
 enum Command {
     /// Render the frames of a scene file, or of a folder
     Render(render::RenderArguments),
+    /// Render frames as a simulation writes them
+    Watch(watch::WatchArguments),
+    /// Print which frames are there, missing, begun, out of date or damaged
+    Status(status::StatusArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
 }
@@ -40,6 +53,8 @@ fn dispatch() -> Exit {
     match Arguments::try_parse() {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Watch(arguments) => watch::run(&arguments),
+            Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
         },
         Err(error) => {

@@ -69,7 +69,9 @@ impl Observer for Progress {
 
     fn finished(&self, record: &FrameRecord) {
         self.bar.set_position((self.bar.position() / PARTS + 1) * PARTS);
-        if let Some(error) = &record.error {
+        if record.status == Status::Interrupted {
+            self.line(&format!("frame {:>6}  interrupted", record.frame));
+        } else if let Some(error) = &record.error {
             self.line(&format!("error: frame {}: {error}", record.frame));
         } else if !self.quiet && record.status == Status::Complete {
             let error = record

@@ -1,36 +1,31 @@
 //! `floe render`
 
-use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 
+use super::duration::duration;
 use super::exit::Exit;
 use super::progress::Progress;
+use super::settings::Settings;
 use super::streams::{print, say};
 use super::summary::summary;
-use crate::driver::{Job, RenderError, RenderOptions, check_pictures, render};
-use crate::sequence::{FrameSelection, SequenceError};
+use crate::driver::{Job, RenderError, RenderOptions, render};
+use crate::sequence::SequenceError;
 
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// A scene file, or a folder with scene.toml or with frames
-    scene: PathBuf,
-    /// Only these frames: 7,9,20 or 1-100 or 1-100x2 (also 1-100:2)
-    #[arg(long, value_name = "RANGE", value_parser = FrameSelection::parse, allow_hyphen_values = true)]
-    frames: Option<FrameSelection>,
-    /// Name of the pictures: shot.exr for one, shots/frame_####.exr (also %04d, $F4) for several
-    /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
-    #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
-    output: Option<String>,
-    /// Samples a pixel [default: render.samples of the scene]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    samples: Option<u32>,
-    /// Seed of every random number [default: render.seed of the scene]
-    #[arg(long, value_name = "S")]
-    seed: Option<u64>,
+    #[command(flatten)]
+    settings: Settings,
     /// Threads that render; one more makes the next frame ready [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Leave frames alone whose pictures are there and up to date, and go on with the one that was interrupted
+    #[arg(long)]
+    resume: bool,
+    /// How often an unfinished frame is saved for --resume: 30s, 5m, 1h, or 0 for only when it is interrupted
+    #[arg(long, value_name = "TIME", default_value = "5m", value_parser = duration)]
+    checkpoint_every: Duration,
     /// Go on with the other frames when one fails; the exit code still tells
     #[arg(long)]
     keep_going: bool,
@@ -42,15 +37,16 @@ pub struct RenderArguments {
 /// Renders and says what became of it.
 pub fn run(arguments: &RenderArguments) -> Exit {
     let options = RenderOptions {
-        frames: arguments.frames.clone(),
-        output: arguments.output.clone(),
-        samples: arguments.samples,
-        seed: arguments.seed,
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
+        resume: arguments.resume,
+        checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
+        ..arguments.settings.options()
     };
+    #[cfg(unix)]
+    super::signals::obey(&options.interrupt);
     let progress = Progress::new(arguments.quiet);
-    let report = Job::open(&arguments.scene).and_then(|job| {
+    let report = Job::open(&arguments.settings.scene).and_then(|job| {
         if let Some(scene) = &job.written_scene {
             say(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }
@@ -60,21 +56,20 @@ pub fn run(arguments: &RenderArguments) -> Exit {
     match report {
         Ok(report) => {
             let printed = print(&summary(&report));
-            report.failures.iter().map(|(_, error)| Exit::from(error)).fold(printed, Exit::max)
+            let interrupted = if report.interrupted { Exit::Interrupted } else { Exit::Complete };
+            let failures = report.failures.iter().map(|(_, error)| Exit::from(error));
+            failures.fold(printed.max(interrupted), Exit::max)
         }
         Err(error) => {
             say(&format!("error: {error}"));
             match error {
-                RenderError::Sequence(SequenceError::NoPlace { .. }) if arguments.output.is_some() => {
+                RenderError::Sequence(SequenceError::NoPlace { .. })
+                    if arguments.settings.output.is_some() =>
+                {
                     Exit::Usage
                 }
                 error => Exit::from(&error),
             }
         }
     }
-}
-
-/// A name for pictures; how many there will be is not known yet.
-fn output_pattern(text: &str) -> Result<String, RenderError> {
-    check_pictures(text, 1).map(|()| text.into())
 }

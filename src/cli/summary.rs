@@ -11,8 +11,10 @@ use crate::sequence::{FrameNumber, format_numbers};
 pub fn summary(report: &RenderReport) -> String {
     let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
     let lines = [
-        Some(frames_line(report, &done)),
+        already_line(report),
+        frames_line(report, &done),
         failures_line(report),
+        interrupted_line(report),
         error_line(&done),
         hierarchy_line(report),
         events_line(&done),
@@ -22,8 +24,19 @@ pub fn summary(report: &RenderReport) -> String {
     lines.into_iter().flatten().map(|line| line + "\n").collect()
 }
 
-fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> String {
+fn already_line(report: &RenderReport) -> Option<String> {
+    let (there, asked) = (report.already.len(), report.already.len() + report.frames.len() + report.skipped);
+    let (word, verb) = (if asked == 1 { "frame" } else { "frames" }, if there == 1 { "was" } else { "were" });
+    let line =
+        || format!("{there} of {asked} {word} {verb} there already ({})", format_numbers(&report.already));
+    (there > 0).then(line)
+}
+
+fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
     let asked = report.frames.len() + report.skipped;
+    if asked == 0 {
+        return None;
+    }
     let word = if asked == 1 { "frame" } else { "frames" };
     let numbers: Vec<FrameNumber> = done.iter().filter_map(|r| r.frame.parse().ok()).collect();
     let names = if numbers.is_empty() { String::new() } else { format!(" ({})", format_numbers(&numbers)) };
@@ -32,7 +45,11 @@ fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> String {
         let each = done.iter().map(|r| r.seconds()).sum::<f64>() / done.len() as f64;
         line += &format!(", {each:.2} s a frame");
     }
-    line
+    Some(line)
+}
+
+fn interrupted_line(report: &RenderReport) -> Option<String> {
+    report.interrupted.then(|| "interrupted: the same command with --resume goes on".into())
 }
 
 fn failures_line(report: &RenderReport) -> Option<String> {
@@ -41,7 +58,7 @@ fn failures_line(report: &RenderReport) -> Option<String> {
         return None;
     }
     let mut line = format!("failed: {}", format_numbers(&failed));
-    if report.skipped > 0 {
+    if report.skipped > 0 && !report.interrupted {
         line += &format!("; {} after it not tried (--keep-going renders them)", report.skipped);
     }
     Some(line)
@@ -117,8 +134,10 @@ fn left_out_line(report: &RenderReport) -> Option<String> {
 
 fn places_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
     let pictures = match done {
-        [] => return Some(format!("no pictures; ledger {}", report.ledger.display())),
-        [only] => only.output.display(),
+        [] if report.already.is_empty() => {
+            return Some(format!("no pictures; ledger {}", report.ledger.display()));
+        }
+        [only] if report.already.is_empty() => only.output.display(),
         _ => Path::new(&report.pattern).display(),
     };
     Some(format!("pictures {pictures}; ledger {}", report.ledger.display()))

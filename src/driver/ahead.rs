@@ -10,9 +10,9 @@ use std::time::Instant;
 use rayon::ThreadPool;
 
 use super::error::RenderError;
+use super::fingerprint::{Fingerprints, FrameSource, Identity, Parsed};
 use super::job::FrameTask;
-use crate::mesh;
-use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
+use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::frame::Frame;
 use crate::scene::world::World;
 
@@ -36,96 +36,93 @@ pub(super) struct Pools {
 impl Pools {
     /// `threads` that render, all cores without a number, and the spare one.
     pub fn new(threads: Option<usize>) -> Result<Self, RenderError> {
-        let pool = |threads: usize| {
-            let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            built.map_err(|e| RenderError::Threads { threads, reason: e.to_string() })
-        };
-        Ok(Self { render: pool(threads.unwrap_or(0))?, spare: pool(1)? })
+        Ok(Self { render: Self::render_only(threads)?, spare: pool(1)? })
+    }
+
+    /// Those that render alone.
+    pub fn render_only(threads: Option<usize>) -> Result<ThreadPool, RenderError> {
+        pool(threads.unwrap_or(0))
     }
 }
 
-/// A frame that is ready, or what is wrong with it.
-type Outcome = (Result<Assembled, RenderError>, Preparation);
+fn pool(threads: usize) -> Result<ThreadPool, RenderError> {
+    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    built.map_err(|e| RenderError::Threads { threads, reason: e.to_string() })
+}
 
-/// Gives `turn` each task in order with its frame, while the next one is made ready; stops when it returns false. Returns
-/// how many had their turn.
+/// A frame that is ready, and which it is.
+#[derive(Debug)]
+pub(super) struct Ready {
+    pub assembled: Assembled,
+    pub identity: Identity,
+}
+
+/// A frame that is ready, or what is wrong with it.
+type Outcome = (Result<Ready, RenderError>, Preparation);
+
+/// Gives `turn` each task in order with its frame, while the next one is made ready; stops when it returns false.
 pub(super) fn one_ahead(
     world: &World,
+    fingerprints: &Fingerprints,
     pools: &Pools,
     tasks: &[FrameTask],
-    mut turn: impl FnMut(&FrameTask, Result<&Assembled, RenderError>, Preparation) -> bool,
-) -> usize {
-    let mut latest: Option<Assembled> = None;
+    mut turn: impl FnMut(&FrameTask, Result<&Ready, RenderError>, Preparation) -> bool,
+) {
+    let mut latest: Option<Ready> = None;
     let mut next: Option<Outcome> = None;
     let mut waiting = Instant::now();
     for (i, task) in tasks.iter().enumerate() {
         let (outcome, mut preparation) = next.take().unwrap_or_else(|| {
             // Nothing is rendered: the first frame, or one after a bad one.
-            let previous = latest.as_ref().map(|assembled| &assembled.frame);
-            pools.render.install(|| prepare(world, task, previous, Buffers::default()))
+            let previous = latest.as_ref().map(|ready| &ready.assembled.frame);
+            pools.render.install(|| prepare(world, fingerprints, task, previous, Buffers::default()))
         });
         preparation.wait_seconds = waiting.elapsed().as_secs_f64();
-        let mut take_turn = |prepared: Result<&Assembled, RenderError>| {
+        let mut take_turn = |prepared: Result<&Ready, RenderError>| {
             let goes_on = turn(task, prepared, preparation);
             waiting = Instant::now();
             goes_on
         };
         let goes_on = match outcome {
             Err(error) => take_turn(Err(error)),
-            Ok(assembled) => {
-                let buffers = latest.take().map(|before| Buffers::from(before.frame)).unwrap_or_default();
-                let latest: &Assembled = latest.insert(assembled);
+            Ok(ready) => {
+                let before = latest.take().map(|before| Buffers::from(before.assembled.frame));
+                let buffers = before.unwrap_or_default();
+                let latest: &Ready = latest.insert(ready);
                 pools.spare.in_place_scope(|scope| {
                     if let Some(task) = tasks.get(i + 1) {
-                        let (next, previous) = (&mut next, Some(&latest.frame));
-                        scope.spawn(move |_| *next = Some(prepare(world, task, previous, buffers)));
+                        let (next, previous) = (&mut next, Some(&latest.assembled.frame));
+                        scope.spawn(move |_| {
+                            *next = Some(prepare(world, fingerprints, task, previous, buffers))
+                        });
                     }
                     take_turn(Ok(latest))
                 })
             }
         };
         if !goes_on {
-            return i + 1;
+            return;
         }
     }
-    tasks.len()
 }
 
-fn prepare(world: &World, task: &FrameTask, previous: Option<&Frame>, buffers: Buffers) -> Outcome {
+fn prepare(
+    world: &World,
+    fingerprints: &Fingerprints,
+    task: &FrameTask,
+    previous: Option<&Frame>,
+    buffers: Buffers,
+) -> Outcome {
     let mut preparation = Preparation::default();
-    let outcome =
-        timed(&mut preparation.read_seconds, || read(world, task)).and_then(|(meshes, warnings)| {
-            let assemble = || world.assemble_into(buffers, task.number, meshes, previous);
-            let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
-            assembled.warnings.extend(warnings);
-            Ok(assembled)
-        });
+    let read = || FrameSource::read(world, fingerprints, task)?.parse(world);
+    let outcome = timed(&mut preparation.read_seconds, read).and_then(|parsed| {
+        let Parsed { meshes, inputs, identity, warnings } = parsed;
+        let assemble = || world.assemble_into(buffers, task.number, meshes, inputs, previous);
+        let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
+        assembled.warnings.extend(warnings);
+        Ok(Ready { assembled, identity })
+    });
     (outcome, preparation)
-}
-
-/// The meshes of a frame, and what there is to say about their velocities.
-fn read(world: &World, task: &FrameTask) -> Result<(Vec<FrameMesh>, Vec<String>), RenderError> {
-    let mut meshes = task.read(&world.velocity_name())?;
-    let mut warnings = Vec::new();
-    if world.follows_vertices() {
-        for (i, mesh) in meshes.iter_mut().enumerate() {
-            let unknown = follow_next(world, task, i, mesh).err();
-            warnings.extend(unknown.map(|why| format!("{}: {why}; {STANDS_STILL}", mesh.path.display())));
-        }
-    }
-    Ok((meshes, warnings))
-}
-
-const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
-
-/// Takes the velocities of mesh `i` from the next frame, or tells why not: whatever is wrong with that one, its turn is
-/// still to come.
-fn follow_next(world: &World, task: &FrameTask, i: usize, mesh: &mut FrameMesh) -> Result<(), String> {
-    let next = task.next.as_ref().ok_or("there is no next frame to take velocities from")?;
-    let after = mesh::read(&next.files[i]).map_err(|e| format!("the next frame cannot be followed: {e}"))?;
-    let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
-    let fps = world.frames().map_or(24.0, |f| f.fps);
-    mesh::follow(&mut mesh.mesh, &after, frames / fps).map_err(|e| e.to_string())
 }
 
 /// Adds the time that some work takes.

@@ -46,6 +46,23 @@ pub enum RenderError {
         /// The frame.
         number: FrameNumber,
     },
+    /// The scene has no frames that could come.
+    #[error(
+        "{scene}: there is no [frames] in it, so there is nothing to wait for; draw it with `floe render`"
+    )]
+    NothingToWatch {
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// A watch waits for one file a frame.
+    #[error(
+        "{scene}: `floe watch` follows the one mesh a frame that [frames] names; with [[meshes]] draw what is there with \
+         `floe render --resume`, again when there is more"
+    )]
+    SeveralMeshes {
+        /// The scene file.
+        scene: PathBuf,
+    },
     /// The scene that was written for a folder of this name is about another folder.
     #[error(
         "{scene}: its frames.path is `{frames}`, not in {folder}: it was written for another folder of the same name; \
@@ -98,6 +115,9 @@ pub enum RenderError {
         /// Of how many.
         rays: u64,
     },
+    /// The run was asked to stop.
+    #[error("interrupted; what is done is kept, and the same command with --resume goes on")]
+    Interrupted,
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -123,6 +143,8 @@ pub enum Blame {
     CannotWrite,
     /// The program or the machine.
     Internal,
+    /// Whoever stopped the run.
+    Interrupted,
 }
 
 impl RenderError {
@@ -134,7 +156,10 @@ impl RenderError {
             }
             Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
-            Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
+            Self::NotExr { .. }
+            | Self::OtherFolder { .. }
+            | Self::NothingToWatch { .. }
+            | Self::SeveralMeshes { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(
                 FrameError::NoMedium { .. }
@@ -148,6 +173,7 @@ impl RenderError {
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
             Self::Threads { .. } => Blame::Internal,
+            Self::Interrupted => Blame::Interrupted,
         }
     }
 }

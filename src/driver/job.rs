@@ -1,5 +1,6 @@
 //! Opens what the user points at: a scene file, a folder with one, or a folder of frames.
 
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use glam::DVec3;
@@ -7,7 +8,7 @@ use glam::DVec3;
 use super::error::RenderError;
 use super::meshes::MeshSequence;
 use crate::film::write::write_atomically;
-use crate::mesh::{self, RawMesh, VelocityName};
+use crate::mesh::{self, MeshError, RawMesh, VelocityName};
 use crate::scene::FrameError;
 use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
@@ -60,13 +61,22 @@ impl FrameTask {
     /// When one cannot be read.
     pub fn read(&self, velocity: &VelocityName) -> Result<Vec<FrameMesh>, RenderError> {
         let read = |path: &PathBuf| {
-            if self.files.len() > 1 && !path.is_file() {
-                return Err(RenderError::MissingMesh { path: path.clone(), number: self.number });
-            }
-            let mesh = mesh::read_with(path, velocity).map_err(FrameError::from)?;
-            Ok(FrameMesh { path: path.clone(), mesh })
+            let (path, bytes) = self.contents(path)?;
+            let mesh = mesh::parse(&bytes, velocity, &path).map_err(FrameError::from)?;
+            Ok(FrameMesh { path, mesh })
         };
         self.files.iter().map(read).collect()
+    }
+
+    /// The bytes of one of its meshes.
+    pub(super) fn contents(&self, path: &Path) -> Result<(PathBuf, Vec<u8>), RenderError> {
+        match std::fs::read(path) {
+            Ok(bytes) => Ok((path.into(), bytes)),
+            Err(error) if self.files.len() > 1 && error.kind() == ErrorKind::NotFound => {
+                Err(RenderError::MissingMesh { path: path.into(), number: self.number })
+            }
+            Err(source) => Err(FrameError::from(MeshError::Io { path: path.into(), source }).into()),
+        }
     }
 }
 
@@ -78,17 +88,42 @@ impl Job {
     /// # Errors
     /// When nothing is there, or the scene file is wrong, or no frames are found.
     pub fn open(path: &Path) -> Result<Self, RenderError> {
-        let (file, written_scene, name) = scene_file(path)?;
-        let description = SceneDescription::from_file(&file)?;
-        let meshes = MeshSequence::of(&description)?;
-        let files = match &description.frames {
-            Some(frames) if description.meshes.is_empty() => discover(&description.directory, &frames.path)?,
-            _ => MeshSequence::numbered(&meshes),
+        let first = |base: &Path, pattern: &str| {
+            let files = discover(base, pattern)?;
+            Ok(mesh::read(&files[0].path).map_err(FrameError::from)?)
         };
+        let mut job = Self::open_on(path, &first)?;
+        let description = &job.world.description;
+        job.meshes = MeshSequence::of(description)?;
+        job.files = match &description.frames {
+            Some(frames) if description.meshes.is_empty() => discover(&description.directory, &frames.path)?,
+            _ => MeshSequence::numbered(&job.meshes),
+        };
+        Ok(job)
+    }
+
+    /// Opens a scene file or a folder whose frames are still being written; `files` is empty.
+    ///
+    /// `first` reads the frame of a folder and pattern that a camera without placement, or a folder without a scene, is
+    /// to be about. It is not asked for otherwise.
+    ///
+    /// # Errors
+    /// When nothing is there, or the scene file is wrong, and those of `first`.
+    pub fn open_on(path: &Path, first: &FirstMesh<'_>) -> Result<Self, RenderError> {
+        let (file, is_new, name) = match find_scene(path)? {
+            SceneFile::There { file, name } => (file, false, name),
+            SceneFile::ToBeWritten { file, name } => {
+                write_default_scene(path, &file, &first(path, "")?)?;
+                (file, true, name)
+            }
+        };
+        let description = SceneDescription::from_file(&file)?;
         let placement = match &description.camera.placement {
             Some(placement) => *placement,
-            None => framed(&description, &files, &meshes)?,
+            None => framed(&description, first)?,
         };
+        let written_scene = is_new.then_some(file);
+        let (files, meshes) = (Vec::new(), Vec::new());
         Ok(Self { world: World::new(description, placement)?, files, meshes, written_scene, name })
     }
 
@@ -137,13 +172,25 @@ impl Job {
     }
 }
 
-/// The scene file of what the user gave, whether it was written just now, and the name of the whole.
-fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderError> {
+/// Reads the first frame of a folder and a pattern.
+pub type FirstMesh<'a> = dyn Fn(&Path, &str) -> Result<RawMesh, RenderError> + 'a;
+
+/// The scene file of what the user gave, and the name of the whole.
+#[derive(Debug)]
+pub(super) enum SceneFile {
+    /// It is there.
+    There { file: PathBuf, name: String },
+    /// A folder without one: it is to be written from its first frame.
+    ToBeWritten { file: PathBuf, name: String },
+}
+
+/// Finds the scene file.
+pub(super) fn find_scene(path: &Path) -> Result<SceneFile, RenderError> {
     if path.is_file() {
         let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         let is_plain = path.file_name().is_some_and(|n| n == SCENE_FILE);
         let name = if is_plain { folder_name(path.parent().unwrap_or(path)) } else { stem };
-        return Ok((path.into(), None, name));
+        return Ok(SceneFile::There { file: path.into(), name });
     }
     if !path.is_dir() {
         return Err(RenderError::NotFound { path: path.into() });
@@ -151,15 +198,14 @@ fn scene_file(path: &Path) -> Result<(PathBuf, Option<PathBuf>, String), RenderE
     let name = folder_name(path);
     let own = path.join(SCENE_FILE);
     if own.is_file() {
-        return Ok((own, None, name));
+        return Ok(SceneFile::There { file: own, name });
     }
-    let beside = Path::new("out").join(&name).join(SCENE_FILE);
-    if beside.is_file() {
-        check_folder(&beside, path)?;
-        return Ok((beside, None, name));
+    let file = Path::new("out").join(&name).join(SCENE_FILE);
+    if !file.is_file() {
+        return Ok(SceneFile::ToBeWritten { file, name });
     }
-    write_default_scene(path, &beside)?;
-    Ok((beside.clone(), Some(beside), name))
+    check_folder(&file, path)?;
+    Ok(SceneFile::There { file, name })
 }
 
 /// Checks that a scene that was written earlier is about this folder: two folders may have the same name.
@@ -179,9 +225,7 @@ fn folder_name(folder: &Path) -> String {
 }
 
 /// Writes the scene of a folder that has none, from its first frame.
-fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
-    let frames = discover(folder, "")?;
-    let first = mesh::read(&frames[0].path).map_err(FrameError::from)?;
+fn write_default_scene(folder: &Path, file: &Path, first: &RawMesh) -> Result<(), RenderError> {
     let mut labels: Vec<i32> = match &first.interfaces {
         Some(interfaces) => interfaces.iter().flat_map(|i| [i.front.0, i.back.0]).collect(),
         None => vec![1],
@@ -191,7 +235,7 @@ fn write_default_scene(folder: &Path, file: &Path) -> Result<(), RenderError> {
     let target = file.parent().unwrap_or(Path::new("."));
     let frames = relative_path(target, folder);
     let name = frames.to_str().ok_or_else(|| RenderError::NotUtf8 { path: folder.into() })?;
-    let text = default_scene(name, bounds_of(&first), &labels, detect_box(&first));
+    let text = default_scene(name, bounds_of(first), &labels, detect_box(first));
     Ok(write_atomically(file, text.as_bytes())?)
 }
 
@@ -216,30 +260,23 @@ fn normalised(path: &Path) -> PathBuf {
     }
 }
 
-/// A camera on the bounds of the lowest-numbered frame, or of the surfaces of a still.
-fn framed(
-    description: &SceneDescription,
-    files: &[FrameFile],
-    meshes: &[MeshSequence],
-) -> Result<Placement, RenderError> {
-    let bounds = match (files.first(), &description.frames) {
-        (Some(first), Some(frames)) if description.meshes.is_empty() => {
-            let (min, max) = bounds_of(&mesh::read(&first.path).map_err(FrameError::from)?);
+/// A camera on the bounds of the first frame, or of the surfaces of a still.
+fn framed(description: &SceneDescription, first: &FirstMesh<'_>) -> Result<Placement, RenderError> {
+    let bounds = match &description.frames {
+        Some(frames) if description.meshes.is_empty() => {
+            let (min, max) = bounds_of(&first(&description.directory, &frames.path)?);
             (min * frames.scale, max * frames.scale)
         }
-        (first, _) => placed_bounds(description, first.map(|first| first.number), meshes)?,
+        _ => placed_bounds(description)?,
     };
     let camera = &description.camera;
     Ok(automatic_placement(bounds, camera.up, camera.fov, camera.resolution))
 }
 
 /// Of the `[[meshes]]` in the first frame, and of the `[[surfaces]]` where there are none.
-fn placed_bounds(
-    description: &SceneDescription,
-    first: Option<FrameNumber>,
-    meshes: &[MeshSequence],
-) -> Result<(DVec3, DVec3), RenderError> {
-    let number = first.unwrap_or(FrameNumber::ONE);
+fn placed_bounds(description: &SceneDescription) -> Result<(DVec3, DVec3), RenderError> {
+    let meshes = MeshSequence::of(description)?;
+    let number = MeshSequence::numbered(&meshes).first().map_or(FrameNumber::ONE, |first| first.number);
     let mut placed: Vec<(PathBuf, f64, DVec3)> = Vec::new();
     for (which, mesh) in description.meshes.iter().enumerate() {
         let moving = meshes.iter().find(|moving| moving.mesh == which);

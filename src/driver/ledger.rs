@@ -19,8 +19,12 @@ use crate::integrator::Counters;
 pub enum Status {
     /// The picture is there.
     Complete,
+    /// There is a PNG of few samples to look at; the picture is still to come.
+    Preview,
     /// There is no picture.
     Failed,
+    /// There is no picture yet: the run was asked to stop.
+    Interrupted,
 }
 
 /// A line of the ledger.
@@ -58,7 +62,7 @@ pub struct FrameRecord {
     pub build_seconds: f64,
     /// How long nothing was rendered because the frame was not ready.
     pub wait_seconds: f64,
-    /// Light transport.
+    /// Light transport, in this run.
     pub render_seconds: f64,
     /// Encoding and writing.
     pub write_seconds: f64,
@@ -66,7 +70,7 @@ pub struct FrameRecord {
     pub samples: u64,
     /// Estimated relative error; `None` with fewer than two replicates.
     pub relative_error: Option<RelativeError>,
-    /// Rays and rare events.
+    /// Rays and rare events, those before a checkpoint included.
     #[serde(flatten)]
     pub counters: Counters,
     /// Light that the picture lacks.

@@ -4,16 +4,33 @@
 //! tiles of one frame while one more makes the next frame ready, and writes a line into the ledger for each. A bad frame
 //! never takes the others with it when [`RenderOptions::keep_going`] is set.
 
+pub mod accumulation;
 mod ahead;
+mod arrivals;
+mod checkpoint;
 pub mod error;
+pub mod fingerprint;
+pub mod interrupt;
 pub mod job;
+mod keeper;
 pub mod ledger;
 pub mod meshes;
+pub mod picture;
+pub mod ready;
 pub mod render;
+mod resume;
 mod session;
+pub mod survey;
 pub mod tiles;
+pub mod watch;
+pub mod whole;
 
 pub use error::RenderError;
+pub use fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
+pub use interrupt::Interrupt;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
+pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use survey::{FrameState, survey};
+pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

@@ -1,13 +1,18 @@
 //! Renders frames one after the other: what a run is asked for, what it tells, and what becomes of it.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::ahead::{Pools, one_ahead};
 use super::error::RenderError;
+use super::fingerprint::Fingerprints;
+use super::interrupt::Interrupt;
 use super::job::{FrameTask, Job};
 use super::ledger::FrameRecord;
+use super::resume::left;
 use super::session::Session;
+use super::watch::WatchStatus;
+use crate::scene::description::RenderDescription;
 use crate::sequence::{
     FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps,
 };
@@ -27,6 +32,23 @@ pub struct RenderOptions {
     pub threads: Option<usize>,
     /// Renders the other frames after a bad one.
     pub keep_going: bool,
+    /// Leaves frames alone whose pictures are there, and goes on from checkpoints.
+    pub resume: bool,
+    /// How often the frame that is being rendered is saved; only when it is asked for without it.
+    pub checkpoint_every: Option<Duration>,
+    /// Asks the run to stop, or to save how far it has come.
+    pub interrupt: Interrupt,
+}
+
+impl RenderOptions {
+    /// The settings of a scene with what is overridden.
+    pub fn settings(&self, scene: &RenderDescription) -> RenderDescription {
+        RenderDescription {
+            samples: self.samples.unwrap_or(scene.samples),
+            seed: self.seed.unwrap_or(scene.seed),
+            ..scene.clone()
+        }
+    }
 }
 
 /// Hears of what happens while frames are rendered.
@@ -41,6 +63,10 @@ pub trait Observer: Sync {
     fn warning(&self, _text: &str) {}
     /// A frame is done, or has failed.
     fn finished(&self, _record: &FrameRecord) {}
+    /// The scene of frames that are waited for is opened; their pictures have names of a pattern.
+    fn opened(&self, _job: &Job, _pattern: &str) {}
+    /// What is going on while frames are waited for.
+    fn watching(&self, _status: &WatchStatus) {}
 }
 
 /// What became of a job.
@@ -48,9 +74,13 @@ pub trait Observer: Sync {
 pub struct RenderReport {
     /// One record a frame, in order.
     pub frames: Vec<FrameRecord>,
+    /// The frames whose pictures were there already.
+    pub already: Vec<FrameNumber>,
+    /// True when it was asked to stop before all was done.
+    pub interrupted: bool,
     /// The frames that have no picture, and why.
     pub failures: Vec<(FrameNumber, RenderError)>,
-    /// Frames that were not tried because one before them failed.
+    /// Frames that were not tried because one before them failed, or because the run was to stop.
     pub skipped: usize,
     /// From start to end.
     pub seconds: f64,
@@ -74,7 +104,16 @@ pub fn render(
     check_pictures(&pattern, tasks.len())?;
     let pools = Pools::new(options.threads)?;
     let start = Instant::now();
+    let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
+    let asked = tasks.len() + absent.len();
+    let tasks = if options.resume {
+        let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, observer));
+        session.report.already = left.already;
+        left.tasks
+    } else {
+        tasks
+    };
     observer.started(tasks.len());
     if options.frames.is_none() {
         gaps(&job.files).iter().for_each(|gap| observer.warning(&missing(gap)));
@@ -82,18 +121,26 @@ pub fn render(
     for number in absent {
         session.absent(number, not_there(job, number));
     }
-    let tried = one_ahead(&job.world, &pools, &tasks, |task, prepared, preparation| {
+    let stop = &options.interrupt;
+    one_ahead(&job.world, &fingerprints, &pools, &tasks, |task, prepared, preparation| {
+        if stop.is_requested() {
+            return false;
+        }
         observer.frame(task.number);
-        let is_done = pools.render.install(|| session.turn(task, prepared, preparation));
-        is_done || options.keep_going
+        let is_done = pools.render.install(|| session.turn(task, prepared, preparation)).is_some();
+        (is_done || options.keep_going) && !stop.is_requested()
     });
-    session.report.skipped = tasks.len() - tried;
+    session.report.skipped = asked - session.report.already.len() - session.report.frames.len();
+    session.report.interrupted |= stop.is_requested() && session.report.skipped > 0;
     session.report.seconds = start.elapsed().as_secs_f64();
     Ok(session.report)
 }
 
 /// The frames to be rendered, and those that were asked for by their number but are not there.
-fn chosen(job: &Job, options: &RenderOptions) -> Result<(Vec<FrameTask>, Vec<FrameNumber>), RenderError> {
+pub(super) fn chosen(
+    job: &Job,
+    options: &RenderOptions,
+) -> Result<(Vec<FrameTask>, Vec<FrameNumber>), RenderError> {
     let Some(selection) = &options.frames else { return Ok((job.tasks(), Vec::new())) };
     let tasks = job.select(selection)?;
     let absent = selection.absent(&numbers(job));
@@ -107,7 +154,7 @@ fn numbers(job: &Job) -> Vec<FrameNumber> {
     job.tasks().iter().map(|task| task.number).collect()
 }
 
-fn not_there(job: &Job, number: FrameNumber) -> RenderError {
+pub(super) fn not_there(job: &Job, number: FrameNumber) -> RenderError {
     SequenceError::NotThere { number, available: format_numbers(&numbers(job)) }.into()
 }
 

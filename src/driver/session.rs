@@ -2,23 +2,32 @@
 
 use std::path::{Path, PathBuf};
 
-use super::ahead::{Preparation, timed};
+use super::accumulation::Accumulation;
+use super::ahead::{Preparation, Ready, timed};
+use super::checkpoint::Checkpoint;
 use super::error::RenderError;
+use super::fingerprint::Identity;
 use super::job::{FrameTask, Job};
+use super::keeper::Keeper;
 use super::ledger::{FrameRecord, Ledger, Status};
+use super::picture::{FINGERPRINT, MESH_HASH, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
-use super::tiles::{Sampling, render_pixels};
+use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
+use crate::film::write::remove_abandoned;
 use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::integrator::Counters;
 use crate::scene::assembly::Assembled;
 use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
-use crate::sequence::{FrameNumber, output_path};
+use crate::scene::frame::Frame;
+use crate::sequence::FrameNumber;
 use crate::spectrum::LaneMode;
 
 /// The frames of one run: their settings, and what has become of them.
 pub(super) struct Session<'a> {
     job: &'a Job,
+    options: &'a RenderOptions,
     pattern: String,
     settings: RenderDescription,
     sampling: Sampling,
@@ -30,16 +39,19 @@ pub(super) struct Session<'a> {
 impl<'a> Session<'a> {
     pub fn new(
         job: &'a Job,
-        options: &RenderOptions,
+        options: &'a RenderOptions,
         observer: &'a dyn Observer,
         pattern: &str,
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
-        let settings = effective(&job.world.description.render, options);
+        let settings = options.settings(&job.world.description.render);
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
+        remove_abandoned(&first_picture);
         let report = RenderReport {
             frames: Vec::new(),
+            already: Vec::new(),
+            interrupted: false,
             failures: Vec::new(),
             skipped: 0,
             seconds: 0.0,
@@ -47,7 +59,7 @@ impl<'a> Session<'a> {
             ledger: ledger.path().into(),
         };
         let sampling = Sampling::new(&settings);
-        Ok(Self { job, pattern: pattern.into(), settings, sampling, ledger, report, observer })
+        Ok(Self { job, options, pattern: pattern.into(), settings, sampling, ledger, report, observer })
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -63,8 +75,11 @@ impl<'a> Session<'a> {
         record.error = outcome.as_ref().err().map(ToString::to_string);
         self.observer.finished(&record);
         self.report.frames.push(record);
-        let Err(error) = outcome else { return true };
-        self.report.failures.push((number, error));
+        match outcome {
+            Ok(()) => return true,
+            Err(RenderError::Interrupted) => self.report.interrupted = true,
+            Err(error) => self.report.failures.push((number, error)),
+        }
         false
     }
 
@@ -74,31 +89,76 @@ impl<'a> Session<'a> {
         self.conclude(number, record, Err(error));
     }
 
-    /// Renders a frame that is ready, or tells what is wrong with it; true when its picture is there.
+    /// Renders a frame that is ready, or tells what is wrong with it. Its pixels, when its picture is there.
     pub fn turn(
         &mut self,
         task: &FrameTask,
-        prepared: Result<&Assembled, RenderError>,
+        prepared: Result<&Ready, RenderError>,
         preparation: Preparation,
+    ) -> Option<FrameImage> {
+        let mut record = self.record(task, preparation);
+        let outcome = prepared.and_then(|ready| {
+            let output = record.output.clone();
+            let checkpoint = Checkpoint::of(&output, ready.identity.fingerprint);
+            let traced = self.trace(task, &ready.assembled, Some(&checkpoint), &mut record);
+            if let Err(RenderError::Mismatches { .. }) = traced {
+                checkpoint.remove();
+            }
+            let image = traced?;
+            let camera = &ready.assembled.frame.views.opening;
+            let write = || self.write(&image, camera, task.number, &ready.identity, &output);
+            timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
+            checkpoint.remove();
+            Ok(image)
+        });
+        record.status = match outcome {
+            Ok(_) => Status::Complete,
+            Err(RenderError::Interrupted) => Status::Interrupted,
+            Err(_) => Status::Failed,
+        };
+        let (image, outcome) = match outcome {
+            Ok(image) => (Some(image), Ok(())),
+            Err(error) => (None, Err(error)),
+        };
+        self.conclude(task.number, record, outcome).then_some(image).flatten()
+    }
+
+    /// Renders a frame without writing it; `shown` takes the pixels and puts them where they can be seen.
+    pub fn preview(
+        &mut self,
+        task: &FrameTask,
+        ready: &Ready,
+        preparation: Preparation,
+        shown: impl FnOnce(&FrameImage) -> Result<(), RenderError>,
     ) -> bool {
+        let mut record = self.record(task, preparation);
+        let outcome = self
+            .trace(task, &ready.assembled, None, &mut record)
+            .and_then(|image| timed(&mut record.write_seconds, || shown(&image)));
+        // What went wrong is told when the picture is to be finished.
+        if outcome.is_err() {
+            return false;
+        }
+        record.status = Status::Preview;
+        self.conclude(task.number, record, outcome)
+    }
+
+    fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
         let output = picture(&self.pattern, task.number);
         let mut record = FrameRecord::failed(task.number.to_string(), task.files.first().cloned(), output);
         record.read_seconds = preparation.read_seconds;
         record.build_seconds = preparation.build_seconds;
         record.wait_seconds = preparation.wait_seconds;
-        let outcome = prepared.and_then(|assembled| self.render(task, assembled, &mut record));
-        if outcome.is_ok() {
-            record.status = Status::Complete;
-        }
-        self.conclude(task.number, record, outcome)
+        record
     }
 
-    fn render(
+    fn trace(
         &mut self,
         task: &FrameTask,
         assembled: &Assembled,
+        checkpoint: Option<&Checkpoint>,
         record: &mut FrameRecord,
-    ) -> Result<(), RenderError> {
+    ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
         let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
         record.left_out.extend(left_out.into_iter().map(Into::into));
@@ -106,10 +166,8 @@ impl<'a> Session<'a> {
             self.observer.warning(warning);
         }
         self.sampling.seed.frame = task.number.millionths();
-        let observer = self.observer;
-        let (image, counters) = timed(&mut record.render_seconds, || {
-            render_pixels(&assembled.frame, &self.sampling, &|done, of| observer.tiles(done, of))
-        });
+        let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
+        let (image, counters) = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
         record.samples = image.samples();
         record.relative_error = estimate_error(&image, DEFAULT_CONFIDENCE).map(Into::into);
@@ -129,9 +187,26 @@ impl<'a> Session<'a> {
             self.observer.warning(&text);
             record.warnings.push(text);
         }
-        let output = record.output.clone();
-        let camera = &assembled.frame.views.opening;
-        timed(&mut record.write_seconds, || self.write(&image, camera, task.number, &output))
+        Ok(image)
+    }
+
+    /// Draws a frame, or goes on with one that has a checkpoint; `None` when the run is to stop before it is done.
+    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Option<(FrameImage, Counters)> {
+        let mut accumulation = Accumulation::new(frame.views.opening.resolution());
+        if self.options.resume
+            && let Some(Err(reason)) = checkpoint.map(|checkpoint| checkpoint.load(&mut accumulation))
+        {
+            self.observer.warning(&reason);
+        }
+        let RenderOptions { interrupt, checkpoint_every, .. } = self.options;
+        let keeper = Keeper::new(self.observer, interrupt, checkpoint, *checkpoint_every);
+        if accumulate(&mut accumulation, frame, &self.sampling, &keeper) {
+            return Some(accumulation.finish());
+        }
+        if accumulation.is_begun() {
+            keeper.save(&accumulation);
+        }
+        None
     }
 
     fn write(
@@ -139,6 +214,7 @@ impl<'a> Session<'a> {
         image: &FrameImage,
         camera: &Camera,
         number: FrameNumber,
+        identity: &Identity,
         path: &Path,
     ) -> Result<(), RenderError> {
         let world = &self.job.world;
@@ -148,14 +224,20 @@ impl<'a> Session<'a> {
             fps: world.frames().map_or(24.0, |f| f.fps),
             world_to_camera: camera.world_to_camera(world.origin),
             world_to_ndc: camera.world_to_ndc(world.origin),
-            attributes: self.attributes(number),
+            attributes: self.attributes(number, identity),
         };
-        let png = output.png.then(|| path.with_extension("png"));
-        Ok(write_frame(image, &metadata, path, png.as_deref(), &output.aovs, output.exposure)?)
+        Ok(write_frame(
+            image,
+            &metadata,
+            path,
+            png_path(&self.job.world.description, path).as_deref(),
+            &output.aovs,
+            output.exposure,
+        )?)
     }
 
     /// The settings that made the picture.
-    fn attributes(&self, number: FrameNumber) -> Vec<(String, String)> {
+    fn attributes(&self, number: FrameNumber, identity: &Identity) -> Vec<(String, String)> {
         let lanes = match self.job.world.mode {
             LaneMode::Rgb => "rgb",
             LaneMode::Spectral => "spectral",
@@ -174,6 +256,10 @@ impl<'a> Session<'a> {
         .into_iter()
         .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
         .map(|(name, value)| (format!("floe:{name}"), value))
+        .chain([
+            (FINGERPRINT.into(), identity.fingerprint.to_string()),
+            (MESH_HASH.into(), identity.mesh_hash.clone()),
+        ])
         .collect()
     }
 }
@@ -195,16 +281,4 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.left_out.extend(assembled.reduced.iter().map(|reduced| {
         format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
     }));
-}
-
-fn effective(scene: &RenderDescription, options: &RenderOptions) -> RenderDescription {
-    RenderDescription {
-        samples: options.samples.unwrap_or(scene.samples),
-        seed: options.seed.unwrap_or(scene.seed),
-        ..scene.clone()
-    }
-}
-
-fn picture(pattern: &str, number: FrameNumber) -> PathBuf {
-    PathBuf::from(output_path(pattern, number))
 }

@@ -1,22 +1,21 @@
 //! The pixels of one frame, tile by tile over all threads.
 //!
 //! A sample depends on its pixel and index alone and a tile's pixels are its own, so neither the number of threads nor
-//! the order of the tiles changes a bit.
+//! the order of the tiles changes a bit. Neither does it matter when rendering is broken off and how often: what is done
+//! is kept in an [`Accumulation`], in which no sample is there twice and none by half.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::film::{FilmSample, Filter, FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
+use super::accumulation::{Accumulation, TilePart};
+use crate::film::{FilmSample, Filter, FrameImage, PixelAccumulator, TileRect};
 use crate::integrator::{Counters, EyeSample, Integrator, PhotonFrame, PhotonPass, Scratch};
 use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
 use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
 use crate::scene::frame::Frame;
 use crate::spectrum::{Wavelengths, film_rgb};
-
-/// Edge of a tile in pixels.
-const TILE_SIZE: u32 = 16;
 
 /// How a frame's pixels are sampled.
 #[derive(Clone, Debug)]
@@ -43,126 +42,197 @@ impl Sampling {
     }
 }
 
+/// Watches over the rendering of a frame, from any thread.
+pub trait Control: Sync {
+    /// Hears of the tiles done, and of their number.
+    fn progress(&self, _done: usize, _of: usize) {}
+    /// Whether to break off between two samples; asked often.
+    fn stops(&self) -> bool {
+        false
+    }
+    /// Whether to rest between two pixels, or two passes, so that what is done can be saved; until it is saved.
+    fn wants_save(&self) -> bool {
+        false
+    }
+    /// Saves what is done; nothing is rendered meanwhile.
+    fn save(&self, _accumulation: &Accumulation) {}
+}
+
 /// Renders all pixels; `progress` hears of the tiles done and their number.
 pub fn render_pixels(
     frame: &Frame,
     sampling: &Sampling,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (FrameImage, Counters) {
-    let [width, height] = frame.views.opening.resolution();
-    let rects = tiles(width, height, TILE_SIZE);
-    let (tiles, mut counters) = match &sampling.integrator {
+    struct Unwatched<'a>(&'a (dyn Fn(usize, usize) + Sync));
+    impl Control for Unwatched<'_> {
+        fn progress(&self, done: usize, of: usize) {
+            (self.0)(done, of);
+        }
+    }
+    let mut accumulation = Accumulation::new(frame.views.opening.resolution());
+    accumulate(&mut accumulation, frame, sampling, &Unwatched(progress));
+    accumulation.finish()
+}
+
+/// Goes on with a frame until every pixel has all its samples; false when it was told to stop before.
+pub fn accumulate(
+    accumulation: &mut Accumulation,
+    frame: &Frame,
+    sampling: &Sampling,
+    control: &dyn Control,
+) -> bool {
+    let work = Work { frame, sampling, control };
+    match &sampling.integrator {
         Integrator::Photon(mapper) => {
             let photons = mapper.prepare(frame, sampling.seed);
             match photons.count() {
                 // Nothing emits photons, or nothing takes them.
-                0 => one_after_the_other(frame, sampling, &rects, progress),
-                _ => passes(frame, sampling, &photons, &rects, progress),
+                0 => work.one_after_the_other(accumulation),
+                _ => work.passes(accumulation, &photons),
             }
         }
-        _ => one_after_the_other(frame, sampling, &rects, progress),
-    };
-    let image = FrameImage::from_tiles(width, height, tiles);
-    counters.non_finite = image.rejected();
-    (image, counters)
+        _ => work.one_after_the_other(accumulation),
+    }
 }
 
-/// Each tile with all its samples.
-fn one_after_the_other(
-    frame: &Frame,
-    sampling: &Sampling,
-    rects: &[TileRect],
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> (Vec<Tile>, Counters) {
-    let done = AtomicUsize::new(0);
-    let rendered: Vec<(Tile, Counters)> = rects
-        .par_iter()
-        .map_init(Scratch::default, |scratch, rect| {
-            scratch.counters = Counters::default();
-            let tile = render_tile(frame, sampling, scratch, *rect);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, rects.len());
-            (tile, scratch.counters)
-        })
-        .collect();
-    let mut counters = Counters::default();
-    let tiles = rendered.into_iter().map(|(tile, events)| {
-        counters += events;
-        tile
-    });
-    (tiles.collect(), counters)
+/// What is to be done at every pixel.
+#[derive(Clone, Copy)]
+struct Work<'a> {
+    frame: &'a Frame,
+    sampling: &'a Sampling,
+    control: &'a dyn Control,
 }
 
-/// All tiles with one sample a pixel, each time with other photons; the sums of all pixels are kept in between.
-fn passes(
-    frame: &Frame,
-    sampling: &Sampling,
-    of_all: &PhotonFrame,
-    rects: &[TileRect],
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> (Vec<Tile>, Counters) {
-    let mut sums: Vec<Vec<PixelAccumulator>> =
-        rects.iter().map(|rect| vec![PixelAccumulator::new(); rect.area()]).collect();
-    let mut counters = Counters::default();
-    let (done, total) = (AtomicUsize::new(0), rects.len().saturating_mul(sampling.samples as usize));
-    for index in 0..sampling.samples {
-        let (photons, events) = of_all.pass(frame, index);
-        counters += events;
-        let tiles = sums.par_iter_mut().zip(rects).map_init(Scratch::default, |scratch, (sums, rect)| {
-            scratch.counters = Counters::default();
-            for (sum, (x, y)) in sums.iter_mut().zip(rect.pixels()) {
-                add_sample(frame, sampling, scratch, sum, [x, y], index, Some(&photons));
+impl Work<'_> {
+    /// Each pixel with all its samples.
+    fn one_after_the_other(&self, accumulation: &mut Accumulation) -> bool {
+        while !accumulation.is_traced() {
+            if self.control.stops() {
+                return false;
             }
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-            scratch.counters
-        });
-        tiles.collect::<Vec<Counters>>().into_iter().for_each(|events| counters += events);
+            if self.control.wants_save() {
+                self.control.save(accumulation);
+            }
+            let total = accumulation.rects.len();
+            let done = AtomicUsize::new(accumulation.traced());
+            let tiles = accumulation.parts.par_iter_mut().zip(&accumulation.rects);
+            tiles.for_each_init(Scratch::default, |scratch, (part, rect)| {
+                let was_done = part.pixels.len() == rect.area();
+                if !was_done && self.trace(part, *rect, scratch) {
+                    self.control.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                }
+            });
+        }
+        true
     }
-    let tile = |(sums, rect): (&Vec<PixelAccumulator>, &TileRect)| Tile {
-        rect: *rect,
-        pixels: sums.iter().map(PixelAccumulator::finish).collect(),
-    };
-    (sums.iter().zip(rects).map(tile).collect(), counters)
-}
 
-fn render_tile(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, rect: TileRect) -> Tile {
-    let pixels = rect.pixels().map(|(x, y)| render_pixel(frame, sampling, scratch, [x, y])).collect();
-    Tile { rect, pixels }
-}
-
-fn render_pixel(frame: &Frame, sampling: &Sampling, scratch: &mut Scratch, at: [u32; 2]) -> Pixel {
-    let mut pixel = PixelAccumulator::new();
-    for index in 0..sampling.samples {
-        add_sample(frame, sampling, scratch, &mut pixel, at, index, None);
+    /// Goes on with a tile; true when it is done. A pixel that is broken off begins anew.
+    fn trace(&self, part: &mut TilePart, rect: TileRect, scratch: &mut Scratch) -> bool {
+        part.pixels.reserve_exact(rect.area() - part.pixels.len());
+        for at in rect.pixels().skip(part.pixels.len()) {
+            if self.control.wants_save() {
+                return false;
+            }
+            scratch.counters = Counters::default();
+            let mut pixel = PixelAccumulator::new();
+            for index in 0..self.sampling.samples {
+                if self.control.stops() {
+                    return false;
+                }
+                self.add_sample(scratch, &mut pixel, at, index, None);
+            }
+            part.pixels.push(pixel.finish());
+            part.counters += scratch.counters;
+        }
+        true
     }
-    pixel.finish()
-}
 
-/// Adds sample `index` of a pixel; `photons` are those of its pass, whose wavelengths and time it takes.
-fn add_sample(
-    frame: &Frame,
-    sampling: &Sampling,
-    scratch: &mut Scratch,
-    pixel: &mut PixelAccumulator,
-    [x, y]: [u32; 2],
-    index: u32,
-    photons: Option<&PhotonPass>,
-) {
-    let mut stream = SampleStream::new(sampling.seed, x, y, index);
-    let [u, v, w, t] = stream.next4();
-    let offset = sampling.filter.sample([u, v]);
-    let wavelengths = photons.map_or_else(|| Wavelengths::for_mode(frame.mode, w), |pass| pass.wavelengths);
-    let time = photons.map_or_else(|| frame.views.time(t), |pass| pass.time);
-    let camera = frame.views.at(time);
-    let (x, y) = (x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y);
-    let eye = if camera.has_lens() {
-        let [u, v, ..] = stream.next4();
-        camera.ray_through_lens(x, y, [u, v])
-    } else {
-        camera.ray(x, y)
-    };
-    let sample =
-        sampling.integrator.sample(frame, scratch, &eye.at_time(time), &wavelengths, stream, photons);
-    pixel.add((index % REPLICATES) as usize, &film_sample(frame, (&camera, time), &sample, &wavelengths));
+    /// All tiles with one sample a pixel, each time with other photons; the sums of all pixels are kept in between.
+    fn passes(&self, accumulation: &mut Accumulation, of_all: &PhotonFrame) -> bool {
+        let Accumulation { rects, parts, .. } = accumulation;
+        for (part, rect) in parts.iter_mut().zip(rects.iter()) {
+            part.sums.resize(rect.area(), PixelAccumulator::new());
+        }
+        let first = parts.iter().map(|part| part.passes).min().unwrap_or(0);
+        let total = rects.len().saturating_mul(self.sampling.samples as usize);
+        let done = AtomicUsize::new(parts.iter().map(|part| part.passes as usize).sum());
+        for index in first..self.sampling.samples {
+            let Some((photons, events)) = of_all.pass(self.frame, index, &|| self.control.stops()) else {
+                return false;
+            };
+            let tiles = accumulation.parts.par_iter_mut().zip(&accumulation.rects);
+            let left = tiles.filter(|(part, _)| part.passes == index);
+            left.for_each_init(Scratch::default, |scratch, (part, rect)| {
+                if self.add_pass(part, *rect, scratch, index, &photons) {
+                    self.control.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                }
+            });
+            if accumulation.parts.iter().any(|part| part.passes == index) {
+                return false;
+            }
+            accumulation.counters += events;
+            if self.control.wants_save() {
+                self.control.save(accumulation);
+            }
+        }
+        true
+    }
+
+    /// Goes on with the pass of a tile; true when it is done.
+    fn add_pass(
+        &self,
+        part: &mut TilePart,
+        rect: TileRect,
+        scratch: &mut Scratch,
+        index: u32,
+        photons: &PhotonPass,
+    ) -> bool {
+        scratch.counters = Counters::default();
+        for (pixel, at) in part.sums.iter_mut().zip(rect.pixels()).skip(part.ahead) {
+            if self.control.stops() {
+                break;
+            }
+            self.add_sample(scratch, pixel, at, index, Some(photons));
+            part.ahead += 1;
+        }
+        part.counters += scratch.counters;
+        let is_done = part.ahead == rect.area();
+        if is_done {
+            (part.passes, part.ahead) = (index + 1, 0);
+        }
+        is_done
+    }
+
+    /// Adds sample `index` of a pixel; `photons` are those of its pass, whose wavelengths and time it takes.
+    fn add_sample(
+        &self,
+        scratch: &mut Scratch,
+        pixel: &mut PixelAccumulator,
+        at: (u32, u32),
+        index: u32,
+        photons: Option<&PhotonPass>,
+    ) {
+        let Self { frame, sampling, .. } = *self;
+        let (x, y) = at;
+        let mut stream = SampleStream::new(sampling.seed, x, y, index);
+        let [u, v, w, t] = stream.next4();
+        let offset = sampling.filter.sample([u, v]);
+        let wavelengths =
+            photons.map_or_else(|| Wavelengths::for_mode(frame.mode, w), |pass| pass.wavelengths);
+        let time = photons.map_or_else(|| frame.views.time(t), |pass| pass.time);
+        let camera = frame.views.at(time);
+        let (x, y) = (x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y);
+        let eye = if camera.has_lens() {
+            let [u, v, ..] = stream.next4();
+            camera.ray_through_lens(x, y, [u, v])
+        } else {
+            camera.ray(x, y)
+        };
+        let eye = eye.at_time(time);
+        let sample = sampling.integrator.sample(frame, scratch, &eye, &wavelengths, stream, photons);
+        pixel.add((index % REPLICATES) as usize, &film_sample(frame, (&camera, time), &sample, &wavelengths));
+    }
 }
 
 fn film_sample(

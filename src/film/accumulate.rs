@@ -18,6 +18,7 @@
 //! Sums are f64. A sample with a number that is not finite is left out and counted.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::spectrum::luminance::luminance_f64;
 
@@ -75,7 +76,7 @@ impl FilmSample {
 }
 
 /// A finished pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pixel {
     /// Mean radiance, linear Rec. 709 RGB.
     pub rgb: Vec3,
@@ -132,14 +133,14 @@ impl Default for Pixel {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Replicate {
     radiance: DVec3,
     samples: u32,
 }
 
-/// Sums over the samples of one pixel. It lives only while its pixel is rendered.
-#[derive(Clone, Debug, Default)]
+/// Sums over the samples of one pixel.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelAccumulator {
     replicates: [Replicate; REPLICATES],
     alpha: f64,

@@ -23,6 +23,14 @@ pub enum FilmError {
         /// The system's reason.
         source: io::Error,
     },
+    /// A picture that is there cannot be read.
+    #[error("{}: cannot read it: {reason}; remove it to have it drawn again", path.display())]
+    CannotRead {
+        /// The file.
+        path: PathBuf,
+        /// The system's or the decoder's reason.
+        reason: String,
+    },
     /// The format cannot hold the frame, such as one without pixels.
     #[error("{}: cannot encode a frame of {width} x {height} pixels: {reason}; check the resolution", path.display())]
     CannotEncode {

@@ -2,7 +2,8 @@
 //!
 //! Layers are channels with a prefix: `R G B A`, then on request `albedo.R/G/B`, `N.X/Y/Z`, `P.X/Y/Z`, `Z`, and
 //! `variance.R/G/B` (of the mean) with `samples`. Attributes: `framesPerSecond`, `timeCode`, `imageCounter`,
-//! `worldToCamera`, `worldToNDC`, `chromaticities`, `software`, and those of the scene under `floe:`.
+//! `worldToCamera`, `worldToNDC`, `chromaticities`, `software`, and those of the scene under `floe:`, with the checksum
+//! of [`super::exr_seal`].
 //!
 //! The bytes depend on the pixels and the metadata alone. Blocks of rows are compressed on the threads of the current
 //! pool and written in order; attributes are sorted; no date, host, run time or thread count is in the file. The test
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 use super::error::FilmError;
 use super::exr_channels::{Channel, channels};
 use super::exr_header::{header, sort_attributes};
+use super::exr_seal::seal;
 use super::frame_image::FrameImage;
 use super::metadata::ImageMetadata;
 use crate::scene::description::Aov;
@@ -61,7 +63,9 @@ pub fn encode_exr(
     })
     .map_err(|error| refused(error.to_string()))?;
     let mut bytes = file.into_inner();
-    sort_attributes(&mut bytes).ok_or_else(|| refused(String::from("its header is not well formed")))?;
+    sort_attributes(&mut bytes)
+        .and_then(|()| seal(&mut bytes))
+        .ok_or_else(|| refused(String::from("its header is not well formed")))?;
     Ok(bytes)
 }
 

@@ -18,10 +18,11 @@ use exr::prelude::{
 
 use super::error::FilmError;
 use super::exr_channels::Channel;
+use super::exr_seal::{CHECKSUM, UNKNOWN};
 use super::metadata::{ImageMetadata, frame_rate, time_code};
 
 /// Bytes before the attributes: the magic number and the version.
-const PREAMBLE: usize = 8;
+pub(super) const PREAMBLE: usize = 8;
 
 /// The header of a frame, in scan lines, ZIP in blocks of 16 rows, from top to bottom.
 ///
@@ -71,6 +72,7 @@ fn own_attributes(metadata: &ImageMetadata) -> Result<LayerAttributes, FilmError
         ..LayerAttributes::default()
     };
     own.other.insert(Text::from("imageCounter"), AttributeValue::I32(metadata.frame_number));
+    own.other.insert(Text::from(CHECKSUM), AttributeValue::Text(Text::from(UNKNOWN)));
     for (name, value) in metadata.prefixed_attributes()? {
         // Names are ASCII by now; values are UTF-8, which readers expect.
         let value = AttributeValue::Text(Text::from_slice_unchecked(value.as_bytes()));
@@ -96,7 +98,7 @@ pub fn sort_attributes(file: &mut [u8]) -> Option<()> {
 }
 
 /// Where the attribute that begins at `start` ends: name, 0, type, 0, size in 4 bytes, value.
-fn attribute_end(file: &[u8], start: usize) -> Option<usize> {
+pub(super) fn attribute_end(file: &[u8], start: usize) -> Option<usize> {
     let after_text = |from: usize| Some(from + file.get(from..)?.iter().position(|&b| b == 0)? + 1);
     let size_at = after_text(after_text(start)?)?;
     let size = file.get(size_at..size_at + 4)?;

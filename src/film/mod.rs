@@ -11,6 +11,7 @@
 //! * [`frame_image`] cuts a frame into tiles and puts it together again; the order of the tiles has no influence.
 //! * [`estimate`] says how far a frame is from the converged picture, with a confidence interval.
 //! * [`exr`] and [`png`] encode; [`tonemap`] says how radiance becomes what a screen shows.
+//! * [`exr_seal`] tells whether a file is whole.
 //! * [`write`](mod@write) makes files appear whole or not at all.
 //!
 //! A file's bytes depend on its pixels and metadata alone, never on threads, host or time. Radiance is linear Rec. 709
@@ -22,6 +23,8 @@ pub mod estimate;
 pub mod exr;
 mod exr_channels;
 mod exr_header;
+mod exr_read;
+pub mod exr_seal;
 pub mod filter;
 pub mod frame_image;
 pub mod metadata;
@@ -38,4 +41,4 @@ pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, estimate_error};
 pub use filter::Filter;
 pub use frame_image::{FrameImage, Tile, TileRect, tiles};
 pub use metadata::ImageMetadata;
-pub use write_frame::write_frame;
+pub use write_frame::{png_bytes, write_frame, write_png_of};

@@ -3,8 +3,11 @@
 //! The bytes go to a hidden temporary file in the destination's folder, are forced to the disk, and then take the
 //! destination's name in one step. A reader, a crash or a full disk never leaves half a picture behind. The file gets
 //! the rights of an ordinary new file (0666 less the umask), not those of a private temporary one.
+//!
+//! A process that is killed leaves its temporary file. Writers hold a lock on theirs, which the system takes from the
+//! dead, so [`remove_abandoned`] knows which ones nobody will finish. Where a file system has no locks, all are left.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -25,16 +28,23 @@ impl StagedFile {
     /// # Errors
     /// [`FilmError::CannotCreate`] for the folder or the temporary file, [`FilmError::CannotWrite`] for the bytes.
     pub fn new(destination: &Path, bytes: &[u8]) -> Result<Self, FilmError> {
-        let folder = match destination.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
-        };
+        Self::written(destination, |file| file.write_all(bytes))
+    }
+
+    /// As [`new`](Self::new), with the bytes that `write` writes.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn written(
+        destination: &Path,
+        write: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> Result<Self, FilmError> {
+        let folder = folder_of(destination);
         fs::create_dir_all(folder)
             .map_err(|source| FilmError::CannotCreate { path: folder.to_path_buf(), source })?;
-        let mut temporary = temporary_file(folder)
+        let mut temporary = locked_file(folder)
             .map_err(|source| FilmError::CannotCreate { path: destination.to_path_buf(), source })?;
-        temporary
-            .write_all(bytes)
+        write(temporary.as_file_mut())
             .and_then(|()| temporary.flush())
             .and_then(|()| temporary.as_file().sync_all())
             .map_err(|source| FilmError::CannotWrite { path: destination.to_path_buf(), source })?;
@@ -62,9 +72,48 @@ pub fn write_atomically(destination: &Path, bytes: &[u8]) -> Result<(), FilmErro
     StagedFile::new(destination, bytes)?.commit()
 }
 
+/// Removes the temporary files in the folder of a picture whose writers are dead.
+pub fn remove_abandoned(picture: &Path) {
+    let Ok(entries) = fs::read_dir(folder_of(picture)) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_temporary =
+            name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        if is_temporary
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            // The lock is held meanwhile: a writer that has just made the file finds out in `locked_file`.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A temporary file with a lock on it.
+fn locked_file(folder: &Path) -> std::io::Result<NamedTempFile> {
+    loop {
+        let file = temporary_file(folder)?;
+        // Without locks nobody removes anything.
+        let is_locked = file.as_file().lock().is_ok();
+        if !is_locked || file.path().exists() {
+            return Ok(file);
+        }
+    }
+}
+
+const PREFIX: &str = ".floe-";
+const SUFFIX: &str = ".tmp";
+
 fn temporary_file(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(".floe-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -123,6 +172,21 @@ mod tests {
         drop(StagedFile::new(&path, b"new").unwrap());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(entries(folder.path()), ["shot.exr"]);
+    }
+
+    #[test]
+    fn only_the_files_of_the_dead_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = folder.path().join("shot.exr");
+        let alive = StagedFile::new(&picture, b"alive").unwrap();
+        for name in [".floe-dead.tmp", ".floe-other", "floe-.tmp", ".other.tmp"] {
+            fs::write(folder.path().join(name), b"").unwrap();
+        }
+        remove_abandoned(&picture);
+        assert_eq!(entries(folder.path()).len(), 4, "{:?}", entries(folder.path()));
+        alive.commit().unwrap();
+        assert_eq!(entries(folder.path()), [".floe-other", ".other.tmp", "floe-.tmp", "shot.exr"]);
+        remove_abandoned(&folder.path().join("no such folder/shot.exr"));
     }
 
     #[cfg(unix)]

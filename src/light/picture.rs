@@ -57,8 +57,16 @@ impl Picture {
     /// When the file is missing, malformed, or has a texel that is negative or not finite.
     pub fn read(path: &Path) -> Result<Self, ImageError> {
         let bytes = std::fs::read(path).map_err(|source| ImageError::Io { path: path.into(), source })?;
+        Self::read_bytes(&bytes, path)
+    }
+
+    /// Reads the contents of a file; `path` is only named in messages.
+    ///
+    /// # Errors
+    /// When the contents are malformed, or have a texel that is negative or not finite.
+    pub fn read_bytes(bytes: &[u8], path: &Path) -> Result<Self, ImageError> {
         let is_exr = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]);
-        let picture = if is_exr { read_exr(&bytes) } else { read_hdr(&bytes) }
+        let picture = if is_exr { read_exr(bytes) } else { read_hdr(bytes) }
             .map_err(|reason| ImageError::Malformed { path: path.into(), reason })?;
         let wrong = picture.texels.iter().position(|t| !(t.is_finite() && t.min_element() >= 0.0));
         match wrong {

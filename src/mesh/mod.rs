@@ -29,7 +29,7 @@ mod weld;
 pub use error::{MeshError, Place};
 pub use follow::{NotFollowed, follow};
 pub use prepare::{MeshWarning, prepare};
-pub use read::{FORMATS, Format, Syntax, read, read_bytes, read_with};
+pub use read::{FORMATS, Format, Syntax, parse, read, read_bytes};
 pub use velocity::{VelocityName, VelocityProperty};
 pub use weld::weld;
 

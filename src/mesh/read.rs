@@ -65,14 +65,15 @@ impl Format {
 /// # Errors
 /// [`MeshError`] when the file cannot be read, its name promises no known format, or its contents are wrong.
 pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
-    read_with(path, &VelocityName::Nothing)
+    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
+    parse(&bytes, &VelocityName::Nothing, path)
 }
 
-/// Reads a mesh from a file with velocities, where it has them.
+/// Reads a mesh from contents of a file that were read before, with velocities of that name where it has them.
 ///
 /// # Errors
-/// Those of [`read()`].
-pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
+/// [`MeshError`] when the file's name promises no known format, or the contents are wrong.
+pub fn parse(bytes: &[u8], velocity: &VelocityName, path: &Path) -> Result<RawMesh, MeshError> {
     let format = Format::of(path).ok_or_else(|| {
         Fault::unsupported(
             Place::File,
@@ -81,8 +82,7 @@ pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshEr
         )
         .in_file(path)
     })?;
-    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
-    read_bytes(&bytes, format, velocity, path)
+    read_bytes(bytes, format, velocity, path)
 }
 
 /// Reads a mesh from the contents of a file; `path` is only named in messages.

@@ -10,6 +10,7 @@ use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, place_of};
 use super::geometry::Geometry;
+use super::inputs::Inputs;
 use super::layers::Layers;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
@@ -21,7 +22,7 @@ use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
 use crate::mesh::{self, Interface, RawMesh, Region, VelocityName, normals};
 use crate::optics::medium::{Medium, MediumId};
-use crate::sequence::{FrameNumber, frame_path, has_place};
+use crate::sequence::FrameNumber;
 use crate::spectrum::{Role, Spectrum, Wavelengths};
 use glam::Vec3;
 
@@ -75,10 +76,11 @@ impl World {
         meshes: impl IntoIterator<Item = FrameMesh>,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
-        self.assemble_into(Buffers::default(), number, meshes, previous)
+        self.assemble_into(Buffers::default(), number, meshes, Inputs::default(), previous)
     }
 
-    /// As [`World::assemble`], in memory that is there; what was in it changes nothing.
+    /// As [`World::assemble`], in memory that is there; what was in it changes nothing. Files that are among the
+    /// `inputs` are not read again.
     ///
     /// # Errors
     /// Those of [`World::assemble`].
@@ -87,6 +89,7 @@ impl World {
         buffers: Buffers,
         number: FrameNumber,
         meshes: impl IntoIterator<Item = FrameMesh>,
+        mut inputs: Inputs,
         previous: Option<&Frame>,
     ) -> Result<Assembled, FrameError> {
         let Buffers { geometry, accel } = buffers;
@@ -98,13 +101,16 @@ impl World {
                 None => assembly.add_frame(mesh, &path)?,
             }
         }
-        for surface in self.description.surfaces.iter().filter(|s| has_place(&s.mesh)) {
-            let path = self.description.directory.join(frame_path(&surface.mesh, number)?);
-            let raw = mesh::read_with(&path, &self.velocity_name())?;
+        for surface in self.surfaces_of_frame(number) {
+            let (surface, path) = surface?;
+            let raw = inputs.mesh(&path, &self.velocity_name())?;
             assembly.parts.add_surface(self, surface, raw, &path)?;
         }
+        let media = self.media_at(number, &mut inputs)?;
         let layers = assembly.settle_bodies()?;
-        Ok(assembly.finish(number, self.media_at(number)?, layers, accel, previous))
+        // The hierarchy takes its memory when that of the files is free again.
+        drop(inputs);
+        Ok(assembly.finish(number, media, layers, accel, previous))
     }
 }
 

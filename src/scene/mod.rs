@@ -14,6 +14,7 @@ pub mod domain;
 pub mod error;
 pub mod frame;
 pub mod geometry;
+pub mod inputs;
 pub mod layers;
 mod motion;
 pub mod needs;

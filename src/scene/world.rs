@@ -1,7 +1,7 @@
 //! What all frames of a sequence share: media, lights, the camera, the origin.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
@@ -9,18 +9,19 @@ use super::camera_path::CameraPath;
 use super::density;
 use super::description::{
     AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
-    MeshDescription, Placement, SceneDescription, SkyDescription,
+    MeshDescription, Placement, SceneDescription, SkyDescription, SurfaceDescription,
 };
 use super::error::FrameError;
+use super::inputs::{ContentHash, Inputs};
 use super::parts::Parts;
 use super::surface::MediumPair;
-use crate::light::{Environment, Picture, Sun};
-use crate::mesh::{self, Region};
+use crate::light::{Environment, Sun};
+use crate::mesh::{Region, VelocityName};
 use crate::optics::RefractiveIndex;
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
 use crate::optics::similarity::Reduction;
-use crate::sequence::{FrameNumber, has_place, is_sequence};
+use crate::sequence::{FrameNumber, SequenceError, frame_path, has_place, is_sequence};
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum};
 
 /// A scene without the meshes that change.
@@ -42,6 +43,8 @@ pub struct World {
     pub environment: Environment,
     /// The sun.
     pub sun: Option<Sun>,
+    /// Hashes of the files that every frame is made of: sky, grids and surfaces, in the order of the scene.
+    pub contents: Vec<ContentHash>,
     /// The `[[surfaces]]` and `[[meshes]]` that are the same in every frame, those without a pattern, ready for rays.
     pub(super) still: Parts,
     names: BTreeMap<String, MediumId>,
@@ -52,50 +55,87 @@ impl World {
     ///
     /// # Errors
     /// When a picture of the sky or a mesh that is the same in every frame cannot be read, or has no place here.
-    pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+    pub fn new(mut description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
-        let placement = description.camera.placement.unwrap_or(placement);
+        let placement = *description.camera.placement.get_or_insert(placement);
         let origin = snapped(placement.eye);
         let camera = CameraPath::new(&description.camera, placement, origin);
+        let mut inputs = Inputs::default();
         let (mut media, names) = media_of(&description, mode);
         for medium in &mut media {
-            medium.density = density::still(&description.media[&medium.name].density, &description, origin)?;
+            let density = &description.media[&medium.name].density;
+            medium.density = density::still(density, &description, origin, &mut inputs)?;
         }
-        let environment = environment_of(&description, mode)?;
+        let environment = environment_of(&description, mode, &mut inputs)?;
         let sun = description.sun.as_ref().map(|sun| {
             let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
             Sun::new(sun.direction, sun.angular_diameter, irradiance)
         });
         let order = description.render.similarity as usize;
         let reductions = media.iter().map(|medium| Reduction::of(&medium.phase, order)).collect();
-        let still = Parts::default();
-        let mut world =
-            Self { description, mode, origin, camera, media, reductions, environment, sun, still, names };
-        world.still = world.still_parts()?;
+        let (still, contents) = (Parts::default(), Vec::new());
+        let mut world = Self {
+            description,
+            mode,
+            origin,
+            camera,
+            media,
+            reductions,
+            environment,
+            sun,
+            contents,
+            still,
+            names,
+        };
+        world.still = world.still_parts(&mut inputs)?;
+        world.contents = inputs.hashes();
         Ok(world)
     }
 
     /// The media of one frame: those with a grid for each frame get theirs.
-    pub(super) fn media_at(&self, number: FrameNumber) -> Result<Vec<Medium>, FrameError> {
+    pub(super) fn media_at(
+        &self,
+        number: FrameNumber,
+        inputs: &mut Inputs,
+    ) -> Result<Vec<Medium>, FrameError> {
         let mut media = self.media.clone();
         for medium in &mut media {
             let description = &self.description.media[&medium.name].density;
-            if let Some(density) = density::of_frame(description, &self.description, self.origin, number)? {
+            let density = density::of_frame(description, &self.description, self.origin, number, inputs)?;
+            if let Some(density) = density {
                 medium.density = density;
             }
         }
         Ok(media)
     }
 
-    fn still_parts(&self) -> Result<Parts, FrameError> {
+    /// The `[[surfaces]]` that have a mesh for each frame, with that of one frame.
+    pub(super) fn surfaces_of_frame(
+        &self,
+        number: FrameNumber,
+    ) -> impl Iterator<Item = Result<(&SurfaceDescription, PathBuf), SequenceError>> {
+        let own = self.description.surfaces.iter().filter(|s| has_place(&s.mesh));
+        own.map(move |s| Ok((s, self.description.directory.join(frame_path(&s.mesh, number)?))))
+    }
+
+    /// The grids that only one frame has.
+    pub(super) fn grids_of_frame(
+        &self,
+        number: FrameNumber,
+    ) -> impl Iterator<Item = Result<PathBuf, SequenceError>> {
+        let media = self.description.media.values();
+        media.filter_map(move |m| density::file_of_frame(&m.density, &self.description, number))
+    }
+
+    fn still_parts(&self, inputs: &mut Inputs) -> Result<Parts, FrameError> {
         let mut parts = Parts::default();
         for surface in self.description.surfaces.iter().filter(|s| !has_place(&s.mesh)) {
             let path = self.description.directory.join(&surface.mesh);
-            parts.add_surface(self, surface, mesh::read(&path)?, &path)?;
+            parts.add_surface(self, surface, inputs.mesh(&path, &VelocityName::Nothing)?, &path)?;
         }
         for (which, mesh) in self.meshes(true) {
             let path = self.description.directory.join(&mesh.path);
-            parts.add_body(self, which, mesh::read(&path)?, &path)?;
+            parts.add_body(self, which, inputs.mesh(&path, &VelocityName::Nothing)?, &path)?;
         }
         Ok(parts)
     }
@@ -230,13 +270,17 @@ fn implied(index: &RefractiveIndex) -> Spectrum {
     index.absorption().unwrap_or(Spectrum::Constant(0.0))
 }
 
-fn environment_of(description: &SceneDescription, mode: LaneMode) -> Result<Environment, FrameError> {
+fn environment_of(
+    description: &SceneDescription,
+    mode: LaneMode,
+    inputs: &mut Inputs,
+) -> Result<Environment, FrameError> {
     match &description.sky {
         SkyDescription::Constant(radiance) => {
             Ok(Environment::Constant(radiance.prepare(Role::Illuminant, mode)))
         }
         SkyDescription::Image { image } => {
-            let picture = Picture::read(&description.directory.join(image))?;
+            let picture = inputs.picture(&description.directory.join(image))?;
             let up = description.frames.as_ref().map_or(super::description::Axis::Z, |f| f.up);
             Ok(Environment::image(picture, up.vector(), mode))
         }

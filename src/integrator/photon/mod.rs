@@ -142,10 +142,18 @@ impl PhotonMapper {
 }
 
 impl PhotonFrame {
-    /// Emits the photons of pass `index` and puts them into maps.
-    pub fn pass(&self, frame: &Frame, index: u32) -> (PhotonPass, Counters) {
+    /// Emits the photons of pass `index` and puts them into maps; `None` when it is told to stop.
+    pub fn pass(
+        &self,
+        frame: &Frame,
+        index: u32,
+        stops: &(dyn Fn() -> bool + Sync),
+    ) -> Option<(PhotonPass, Counters)> {
         let (common, stream) = self.numbers(frame, index);
-        let arrivals = self.trace(frame, &common, self.count, &stream);
+        let arrivals = self.trace(frame, &common, self.count, &stream, stops);
+        if stops() {
+            return None;
+        }
         let settings = &self.mapper.settings;
         let radii = self.radii.shrunk(index, settings.shrink.into());
         let pass = PhotonPass {
@@ -161,7 +169,7 @@ impl PhotonFrame {
             peaked: frame.media.iter().map(|medium| has_peak(&medium.phase)).collect(),
             sky: self.sky,
         };
-        (pass, arrivals.counters)
+        Some((pass, arrivals.counters))
     }
 
     /// Photons a pass; 0 where none are needed.
@@ -187,6 +195,7 @@ impl PhotonFrame {
         (wavelengths, time): &(Wavelengths, f32),
         count: u32,
         stream: &(impl Fn(u32) -> SampleStream + Sync),
+        stops: &(dyn Fn() -> bool + Sync),
     ) -> Arrivals {
         let Some(emission) = &self.emission else { return Arrivals::default() };
         let max_depth = self.mapper.path.interactions();
@@ -199,17 +208,17 @@ impl PhotonFrame {
             max_depth,
             volume_share: self.volume_share,
         }
-        .run(stream)
+        .run(stream, stops)
     }
 
     /// A few photons tell how many of the many collisions in media are worth keeping, and some more the radii.
     fn run_pilots(&mut self, frame: &Frame) {
         let (common, stream) = self.numbers(frame, 0);
-        let first = self.trace(frame, &common, FIRST_PILOT, &stream);
+        let first = self.trace(frame, &common, FIRST_PILOT, &stream, &|| false);
         let in_media = first.volume.len() as f32 / (FIRST_PILOT as f32 * FIRST_SHARE);
         self.volume_share = (KEPT_IN_MEDIA / in_media).min(1.0);
         let count = self.count.min(PILOT);
-        let pilot = self.trace(frame, &common, count, &stream);
+        let pilot = self.trace(frame, &common, count, &stream, &|| false);
         // Photons of one pilot stand for so many photons of a pass.
         let share = count as f32 / self.count as f32;
         let natural = |photons: &[Photon]| radius::natural(photons, share);

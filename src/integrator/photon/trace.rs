@@ -68,8 +68,12 @@ pub(super) struct Tracing<'a> {
 }
 
 impl Tracing<'_> {
-    /// Emits and follows all photons; `stream` gives the numbers of each by its index.
-    pub(super) fn run(&self, stream: impl Fn(u32) -> SampleStream + Sync) -> Arrivals {
+    /// Emits and follows all photons, or fewer when it is told to stop; `stream` gives the numbers of each by its index.
+    pub(super) fn run(
+        &self,
+        stream: impl Fn(u32) -> SampleStream + Sync,
+        stops: &(dyn Fn() -> bool + Sync),
+    ) -> Arrivals {
         let batches: Vec<Arrivals> = (0..self.count.div_ceil(BATCH))
             .into_par_iter()
             .map_init(Scratch::default, |scratch, batch| {
@@ -78,7 +82,7 @@ impl Tracing<'_> {
                 let range = batch * BATCH..((batch + 1) * BATCH).min(self.count);
                 let mut walk =
                     Walk { sample: self.sample(scratch), arrivals: Arrivals::default(), tracing: *self };
-                for index in range {
+                for index in range.take_while(|_| !stops()) {
                     let mut stream = stream(index);
                     let count = (index, self.count);
                     if let Some(start) =

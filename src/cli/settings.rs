@@ -1,0 +1,45 @@
+//! What several commands are told in the same words: the scene, its frames, and what takes the place of its settings.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::driver::{RenderError, RenderOptions, check_pictures};
+use crate::sequence::FrameSelection;
+
+#[derive(Debug, Args)]
+pub struct Settings {
+    /// A scene file, or a folder with scene.toml or with frames
+    pub scene: PathBuf,
+    /// Only these frames: 7,9,20 or 1-100 or 1-100x2 (also 1-100:2)
+    #[arg(long, value_name = "RANGE", value_parser = FrameSelection::parse, allow_hyphen_values = true)]
+    frames: Option<FrameSelection>,
+    /// Name of the pictures: shot.exr for one, shots/frame_####.exr (also %04d, $F4) for several
+    /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
+    #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
+    pub output: Option<String>,
+    /// Samples a pixel [default: render.samples of the scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    samples: Option<u32>,
+    /// Seed of every random number [default: render.seed of the scene]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+}
+
+impl Settings {
+    /// What they ask of a run.
+    pub fn options(&self) -> RenderOptions {
+        RenderOptions {
+            frames: self.frames.clone(),
+            output: self.output.clone(),
+            samples: self.samples,
+            seed: self.seed,
+            ..RenderOptions::default()
+        }
+    }
+}
+
+/// A name for pictures; how many there will be is not known yet.
+pub(super) fn output_pattern(text: &str) -> Result<String, RenderError> {
+    check_pictures(text, 1).map(|()| text.into())
+}

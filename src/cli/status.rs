@@ -1,0 +1,97 @@
+//! `floe status`
+
+use std::fmt::Write;
+
+use clap::Args;
+use serde_json::json;
+
+use super::exit::Exit;
+use super::settings::Settings;
+use super::streams::{print, say};
+use crate::driver::{FrameState, Job, survey};
+use crate::sequence::{FrameNumber, format_numbers};
+
+#[derive(Debug, Args)]
+pub struct StatusArguments {
+    #[command(flatten)]
+    settings: Settings,
+    /// End with 75 unless every frame is there
+    #[arg(long)]
+    require_complete: bool,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+type States = [(FrameNumber, FrameState)];
+
+/// Prints which frames are there and which are not, as ranges that `--frames` takes.
+pub fn run(arguments: &StatusArguments) -> Exit {
+    let found =
+        Job::open(&arguments.settings.scene).and_then(|job| survey(&job, &arguments.settings.options()));
+    let (states, pattern) = match found {
+        Ok(found) => found,
+        Err(error) => {
+            say(&format!("error: {error}"));
+            return Exit::from(&error);
+        }
+    };
+    let printed = print(&if arguments.json { as_json(&states, &pattern) } else { as_text(&states) });
+    let is_complete = states.iter().all(|(_, state)| *state == FrameState::Complete);
+    if arguments.require_complete && !is_complete { printed.max(Exit::Interrupted) } else { printed }
+}
+
+fn name(state: &FrameState) -> &'static str {
+    match state {
+        FrameState::Complete => "complete",
+        FrameState::Partial => "partial",
+        FrameState::Missing => "missing",
+        FrameState::Stale => "stale",
+        FrameState::Corrupt(_) => "corrupt",
+        FrameState::Unreadable(_) => "unreadable",
+    }
+}
+
+const NAMES: [&str; 6] = ["complete", "partial", "missing", "stale", "corrupt", "unreadable"];
+
+fn numbers(states: &States, wanted: &str) -> Vec<FrameNumber> {
+    states.iter().filter(|(_, state)| name(state) == wanted).map(|(number, _)| *number).collect()
+}
+
+fn problem(state: &FrameState) -> Option<&str> {
+    match state {
+        FrameState::Corrupt(reason) | FrameState::Unreadable(reason) => Some(reason),
+        _ => None,
+    }
+}
+
+/// A line for each state that there is, then one for each problem.
+fn as_text(states: &States) -> String {
+    let mut text = String::new();
+    for wanted in NAMES {
+        let numbers = numbers(states, wanted);
+        if !numbers.is_empty() {
+            let _ = writeln!(text, "{wanted:<10} {}", format_numbers(&numbers));
+        }
+    }
+    for (number, state) in states {
+        if let Some(problem) = problem(state) {
+            let _ = writeln!(text, "frame {number}: {problem}");
+        }
+    }
+    text
+}
+
+fn as_json(states: &States, pattern: &str) -> String {
+    let problems: Vec<_> = states
+        .iter()
+        .filter_map(|(number, state)| {
+            Some(json!({ "frame": number.to_string(), "problem": problem(state)? }))
+        })
+        .collect();
+    let mut all = json!({ "frames": states.len(), "pictures": pattern, "problems": problems });
+    for wanted in NAMES {
+        all[wanted] = format_numbers(&numbers(states, wanted)).into();
+    }
+    format!("{all}\n")
+}

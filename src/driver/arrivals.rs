@@ -1,0 +1,279 @@
+//! The frames of a sequence that is still being written: which are there, which may be looked at, what is drawn of them.
+//!
+//! A scan lists the folder and takes each file's signature; it reads nothing. What it cannot list (no folder yet, no
+//! frames, two sequences in one folder for a while) changes nothing about the frames that are known.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::error::RenderError;
+use super::ready::{Readiness, Rules, Signature};
+use crate::sequence::{FrameFile, FrameNumber, SequenceError, discover, gaps};
+
+/// Which frame is drawn first when several wait.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Order {
+    /// The lowest number.
+    #[default]
+    Oldest,
+    /// The one that was written last; the highest number of several.
+    Newest,
+}
+
+/// When a frame came, to order frames by; those of one scan by number.
+pub(super) type Came = (Duration, FrameNumber);
+
+/// One frame of the sequence.
+#[derive(Debug)]
+pub(super) struct Arrival {
+    /// Its file.
+    pub path: PathBuf,
+    /// What is known about the file.
+    pub readiness: Readiness,
+    /// The hash of the mesh that the frame's finished picture is of.
+    pub drawn: Option<String>,
+    /// The signature of the file that a preview was made of.
+    pub previewed: Option<Signature>,
+    /// Whether its picture is being finished.
+    pub in_work: bool,
+    /// Why there is no picture of the file as it is.
+    pub failure: Option<RenderError>,
+    /// How often drawing the file as it is has failed.
+    pub failures: u32,
+}
+
+impl Arrival {
+    fn new(path: PathBuf, signature: Signature, now: Duration) -> Self {
+        Self {
+            path,
+            readiness: Readiness::new(signature, now),
+            drawn: None,
+            previewed: None,
+            in_work: false,
+            failure: None,
+            failures: 0,
+        }
+    }
+
+    /// Forgets what was wrong with the file that it was.
+    pub fn forgive(&mut self) {
+        self.failure = None;
+        self.failures = 0;
+    }
+
+    /// Whether it is drawn as it is, or told to be bad.
+    pub fn is_settled(&self) -> bool {
+        self.readiness.is_settled() && !self.in_work
+    }
+}
+
+/// All frames that are there.
+#[derive(Debug)]
+pub(super) struct Arrivals {
+    base: PathBuf,
+    pattern: String,
+    rules: Rules,
+    frames: BTreeMap<FrameNumber, Arrival>,
+    /// When a file came, changed or went away.
+    changed: Duration,
+    /// Why the folder could not be listed, since when, and whether that was told.
+    trouble: Option<(String, Duration, bool)>,
+}
+
+impl Arrivals {
+    /// Frames of a pattern relative to a folder; none before the first scan.
+    pub fn new(base: &Path, pattern: &str, rules: Rules) -> Self {
+        Self {
+            base: base.into(),
+            pattern: pattern.into(),
+            rules,
+            frames: BTreeMap::new(),
+            changed: Duration::ZERO,
+            trouble: None,
+        }
+    }
+
+    /// The folder that the files are in.
+    pub fn folder(&self) -> PathBuf {
+        let whole = self.base.join(&self.pattern);
+        let folder = if self.pattern.is_empty() || whole.is_dir() {
+            self.base.join(&self.pattern)
+        } else {
+            whole.parent().map_or_else(PathBuf::new, Path::to_owned)
+        };
+        if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder }
+    }
+
+    /// Whether these are the frames of a pattern relative to a folder.
+    pub fn is_of(&self, base: &Path, pattern: &str) -> bool {
+        self.base == base && self.pattern == pattern
+    }
+
+    /// When anything changed last.
+    pub fn changed(&self) -> Duration {
+        self.changed
+    }
+
+    /// A frame.
+    pub fn get_mut(&mut self, number: FrameNumber) -> Option<&mut Arrival> {
+        self.frames.get_mut(&number)
+    }
+
+    /// What the frames go by.
+    pub fn rules(&self) -> Rules {
+        self.rules
+    }
+
+    /// A file turned out to have changed.
+    pub fn touch(&mut self, now: Duration) {
+        self.changed = now;
+    }
+
+    /// All frames in order.
+    pub fn iter(&self) -> impl Iterator<Item = (&FrameNumber, &Arrival)> {
+        self.frames.iter()
+    }
+
+    /// All frames in order, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (FrameNumber, &mut Arrival)> {
+        self.frames.iter_mut().map(|(number, arrival)| (*number, arrival))
+    }
+
+    /// Looks at names and signatures. Returns what the user has to know of the folder, once.
+    ///
+    /// # Errors
+    /// [`SequenceError::Pattern`]: no file will ever match.
+    pub fn scan(&mut self, now: Duration) -> Result<Option<String>, SequenceError> {
+        let nothing =
+            |error: &io::Error| matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory);
+        match discover(&self.base, &self.pattern) {
+            Ok(files) => {
+                self.trouble = None;
+                self.take(files, now);
+                Ok(None)
+            }
+            Err(SequenceError::NothingFound { .. }) => {
+                self.trouble = None;
+                self.take(Vec::new(), now);
+                Ok(None)
+            }
+            Err(SequenceError::Io { source, .. }) if nothing(&source) => Ok(None),
+            Err(error @ SequenceError::Pattern { .. }) => Err(error),
+            Err(error) => {
+                let known =
+                    self.frames.iter().map(|(number, a)| FrameFile { number: *number, path: a.path.clone() });
+                self.take(known.collect(), now);
+                Ok(self.complain(error.to_string(), now))
+            }
+        }
+    }
+
+    /// A folder may be in disorder for a moment, such as while a file is replaced by its compressed form.
+    fn complain(&mut self, text: String, now: Duration) -> Option<String> {
+        let patience = self.rules.patience();
+        match &mut self.trouble {
+            Some((known, since, told)) if *known == text => {
+                let is_time = !*told && now.saturating_sub(*since) >= patience;
+                *told |= is_time;
+                is_time.then_some(text)
+            }
+            trouble => {
+                *trouble = Some((text, now, false));
+                None
+            }
+        }
+    }
+
+    fn take(&mut self, files: Vec<FrameFile>, now: Duration) {
+        let there: BTreeMap<FrameNumber, (PathBuf, Signature)> = files
+            .into_iter()
+            .filter_map(|file| {
+                let metadata = std::fs::metadata(&file.path).ok()?;
+                Some((file.number, (file.path, Signature::of(&metadata))))
+            })
+            .collect();
+        let before = self.frames.len();
+        self.frames.retain(|number, _| there.contains_key(number));
+        let mut any_change = self.frames.len() < before;
+        for (number, (path, signature)) in there {
+            match self.frames.get_mut(&number) {
+                Some(arrival) => {
+                    if arrival.readiness.seen(signature, now) {
+                        any_change = true;
+                        arrival.forgive();
+                    }
+                    arrival.path = path;
+                }
+                None => {
+                    any_change = true;
+                    self.frames.insert(number, Arrival::new(path, signature, now));
+                }
+            }
+        }
+        if any_change {
+            self.changed = now;
+        }
+    }
+
+    /// Of the frames that are to be looked at now and that are wanted, the first in an order.
+    pub fn next(
+        &self,
+        order: Order,
+        now: Duration,
+        mut wanted: impl FnMut(FrameNumber, &Arrival) -> bool,
+    ) -> Option<FrameNumber> {
+        let mut due = self.frames.iter().filter(|(number, arrival)| {
+            arrival.readiness.due(&self.rules).is_some_and(|due| due <= now) && wanted(**number, arrival)
+        });
+        match order {
+            Order::Oldest => due.next().map(|(number, _)| *number),
+            Order::Newest => {
+                due.max_by_key(|(number, arrival)| (arrival.readiness.since(), **number)).map(|(n, _)| *n)
+            }
+        }
+    }
+
+    /// When the next frame is to be looked at that is not to be looked at yet.
+    pub fn next_due(&self, now: Duration) -> Option<Duration> {
+        self.frames.values().filter_map(|a| a.readiness.due(&self.rules)).filter(|due| *due > now).min()
+    }
+
+    /// How many frames wait to be drawn.
+    pub fn queue(&self, now: Duration) -> usize {
+        let due = |arrival: &&Arrival| arrival.readiness.due(&self.rules).is_some_and(|due| due <= now);
+        self.frames.values().filter(due).count()
+    }
+
+    /// Whether everything that is there is drawn, or told to be bad.
+    pub fn is_settled(&self) -> bool {
+        self.frames.values().all(Arrival::is_settled)
+    }
+
+    /// Whether a frame is drawn as it is, and so is every one before it that is there and not bad.
+    pub fn is_drawn_up_to(&self, last: FrameNumber) -> bool {
+        self.frames.get(&last).is_some_and(|a| a.drawn.is_some() && a.failure.is_none())
+            && self.frames.range(..=last).all(|(_, arrival)| arrival.is_settled())
+    }
+
+    /// Whether frames before `last` are not there that the steps of the others suggest.
+    pub fn has_gaps_before(&self, last: FrameNumber) -> bool {
+        let file = |number: &FrameNumber| FrameFile { number: *number, path: PathBuf::new() };
+        let files: Vec<FrameFile> = self.frames.range(..=last).map(|(number, _)| file(number)).collect();
+        !gaps(&files).is_empty()
+    }
+}
+
+/// The bytes of a file, with its signature before they were read and that of whatever has the name afterwards.
+pub(super) fn read_signed(path: &Path) -> io::Result<(Signature, Vec<u8>, Option<Signature>)> {
+    // Opening asks network file systems for what the file is now; a listing may be a minute old.
+    let mut file = File::open(path)?;
+    let before = Signature::of(&file.metadata()?);
+    let mut bytes = Vec::with_capacity(usize::try_from(before.size).unwrap_or(0));
+    file.read_to_end(&mut bytes)?;
+    let after = std::fs::metadata(path).ok().map(|metadata| Signature::of(&metadata));
+    let is_whole = bytes.len() as u64 == before.size;
+    Ok((before, bytes, after.filter(|_| is_whole)))
+}

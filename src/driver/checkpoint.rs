@@ -1,0 +1,212 @@
+//! A frame that is not done yet, on the disk: `.frame_0001.checkpoint` beside `frame_0001.exr`.
+//!
+//! ```text
+//! head (what kind of file, sizes of what is in it), fingerprint, tiles and counters, SHA-256 of all before it
+//! ```
+//!
+//! Sums are there bit by bit, so a frame that goes on ends as the same bytes. The file is replaced in one step and
+//! belongs to one fingerprint: what another scene, mesh or version left behind is never taken for this frame's.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use super::accumulation::{Accumulation, TilePart};
+use super::fingerprint::Fingerprint;
+use crate::film::write::StagedFile;
+use crate::film::{FilmError, Pixel, PixelAccumulator};
+use crate::integrator::Counters;
+
+/// Bytes of the checksum.
+const CHECKSUM: usize = 32;
+
+/// What a file begins with. Pixels of another size are those of another build.
+fn head() -> String {
+    let sizes = [size_of::<Pixel>(), size_of::<PixelAccumulator>(), size_of::<Counters>()];
+    format!("floe checkpoint 1 {sizes:?}\n")
+}
+
+/// The checkpoint of a picture.
+#[derive(Clone, Debug)]
+pub(super) struct Checkpoint {
+    path: PathBuf,
+    fingerprint: Fingerprint,
+}
+
+impl Checkpoint {
+    /// That of a picture, which need not be there.
+    pub fn of(picture: &Path, fingerprint: Fingerprint) -> Self {
+        Self { path: Self::path_beside(picture), fingerprint }
+    }
+
+    /// Where the checkpoint of a picture is.
+    pub fn path_beside(picture: &Path) -> PathBuf {
+        let stem = picture.file_stem().unwrap_or_default().to_string_lossy();
+        picture.with_file_name(format!(".{stem}.checkpoint"))
+    }
+
+    /// Whether it is there and of this fingerprint, by its first bytes.
+    pub fn is_there(&self) -> bool {
+        let mut wanted = head().into_bytes();
+        wanted.extend(self.fingerprint.0);
+        let mut start = vec![0; wanted.len()];
+        File::open(&self.path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == wanted
+    }
+
+    /// Replaces it.
+    ///
+    /// # Errors
+    /// When it cannot be written; the one before it is left then.
+    pub fn save(&self, accumulation: &Accumulation) -> Result<(), FilmError> {
+        let contents = (&accumulation.parts, &accumulation.counters);
+        StagedFile::written(&self.path, |file| {
+            let mut hashed = Hashed { file, hasher: Sha256::new() };
+            hashed.write_all(head().as_bytes())?;
+            hashed.write_all(&self.fingerprint.0)?;
+            let mut buffered = std::io::BufWriter::with_capacity(1 << 16, hashed);
+            postcard::to_io(&contents, &mut buffered).map_err(std::io::Error::other)?;
+            let Hashed { file, hasher } = buffered.into_inner()?;
+            file.write_all(&hasher.finalize())
+        })?
+        .commit()
+    }
+
+    /// Puts what it holds into an accumulation; false when there is none.
+    ///
+    /// # Errors
+    /// Why one that is there is of no use, in words; the accumulation is as it was then.
+    pub fn load(&self, accumulation: &mut Accumulation) -> Result<bool, String> {
+        let bytes = match std::fs::read(&self.path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(self.says(&format!("cannot be read: {error}"))),
+        };
+        let (parts, counters) = self.decode(&bytes).map_err(|reason| self.says(reason))?;
+        if accumulation.restore(parts, counters) {
+            Ok(true)
+        } else {
+            Err(self.says("is of a picture of another size"))
+        }
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Result<(Vec<TilePart>, Counters), &'static str> {
+        let damaged = "is damaged";
+        let (body, checksum) = bytes.split_last_chunk::<CHECKSUM>().ok_or(damaged)?;
+        if Sha256::digest(body).as_slice() != checksum {
+            return Err(damaged);
+        }
+        let body = body.strip_prefix(head().as_bytes()).ok_or("was left by another version")?;
+        let body = body.strip_prefix(&self.fingerprint.0).ok_or("is of another scene, mesh or frame")?;
+        match postcard::take_from_bytes(body) {
+            Ok((contents, [])) => Ok(contents),
+            _ => Err(damaged),
+        }
+    }
+
+    fn says(&self, reason: &str) -> String {
+        format!("{}: the checkpoint {reason}; the frame begins anew", self.path.display())
+    }
+
+    /// Takes it away, whatever it is; a frame that is done needs none.
+    pub fn remove(&self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+/// Hashes what it writes.
+struct Hashed<'a> {
+    file: &'a mut File,
+    hasher: Sha256,
+}
+
+impl Write for Hashed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::FilmSample;
+    use glam::Vec3;
+
+    const FINGERPRINT: Fingerprint = Fingerprint([3; 16]);
+
+    /// A frame of 20 x 3 pixels in two tiles, the first of them half done.
+    fn begun() -> Accumulation {
+        let mut begun = Accumulation::new([20, 3]);
+        let mut sum = PixelAccumulator::new();
+        sum.add(1, &FilmSample::of_sky(Vec3::new(0.1, f32::MIN_POSITIVE / 4.0, -0.3)));
+        begun.parts[0].pixels = vec![sum.finish(); 7];
+        begun.parts[0].counters.rays = u64::MAX;
+        begun.parts[1].sums = vec![sum; 12];
+        begun.parts[1].passes = 5;
+        begun.parts[1].ahead = 11;
+        begun.counters.photons = 8;
+        begun
+    }
+
+    #[test]
+    fn what_was_saved_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoint = Checkpoint::of(&folder.path().join("a.1.exr"), FINGERPRINT);
+        let mut loaded = Accumulation::new([20, 3]);
+        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(false), false));
+        checkpoint.save(&begun()).unwrap();
+        assert!(folder.path().join(".a.1.checkpoint").is_file());
+        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(true), true));
+        assert_eq!(loaded, begun());
+        checkpoint.remove();
+        assert!(!checkpoint.is_there());
+    }
+
+    #[test]
+    fn another_frame_and_another_size_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = folder.path().join("a.exr");
+        Checkpoint::of(&picture, FINGERPRINT).save(&begun()).unwrap();
+        let other = Checkpoint::of(&picture, Fingerprint([4; 16]));
+        let mut loaded = Accumulation::new([20, 3]);
+        assert!(other.load(&mut loaded).unwrap_err().contains("another scene, mesh or frame"));
+        assert!(!other.is_there());
+        let mut larger = Accumulation::new([20, 4]);
+        let error = Checkpoint::of(&picture, FINGERPRINT).load(&mut larger).unwrap_err();
+        assert!(error.contains("another size"), "{error}");
+        assert_eq!((loaded, larger), (Accumulation::new([20, 3]), Accumulation::new([20, 4])));
+    }
+
+    #[test]
+    fn damage_is_noticed_at_every_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        let checkpoint = Checkpoint::of(&folder.path().join("a.exr"), FINGERPRINT);
+        checkpoint.save(&begun()).unwrap();
+        let whole = std::fs::read(&checkpoint.path).unwrap();
+        assert!(checkpoint.decode(&whole).is_ok());
+        for at in 0..whole.len() {
+            assert!(checkpoint.decode(&whole[..at]).is_err(), "{at}");
+            let mut damaged = whole.clone();
+            damaged[at] ^= 1;
+            assert!(checkpoint.decode(&damaged).is_err(), "{at}");
+        }
+    }
+
+    /// With a checksum that is right the rest may still be anything.
+    #[test]
+    fn contents_that_are_none_are_refused() {
+        let checkpoint = Checkpoint::of(Path::new("a.exr"), FINGERPRINT);
+        for contents in [&[][..], &[255; 40], &[1, 255, 255, 255, 255, 15], b"text"] {
+            let mut bytes = [head().as_bytes(), &FINGERPRINT.0, contents].concat();
+            bytes.extend(Sha256::digest(&bytes));
+            assert_eq!(checkpoint.decode(&bytes).unwrap_err(), "is damaged", "{contents:?}");
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! What a picture depends on, in 128 bits: whether it has to be drawn again is seen without drawing it.
+//!
+//! ```text
+//! fingerprint = first 128 bits of SHA-256(version of floe, scene, its files, frame number, the frame's files)
+//! ```
+//!
+//! The scene is what its file says with every default filled in, so comments and the order of keys do not count, and
+//! nothing that changes pixels can be forgotten here: what does not count is taken out by name. Files count by their
+//! contents, not by their dates. A billion pictures have two of one fingerprint by chance with a probability of
+//! (10^9)^2 / 2^129 = 1.5e-21. A processor with instructions for SHA-256 takes half a second for a gigabyte.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use sha2::{Digest, Sha256};
+
+use super::error::RenderError;
+use super::job::FrameTask;
+use crate::mesh::{self, VelocityName};
+use crate::scene::FrameError;
+use crate::scene::assembly::FrameMesh;
+use crate::scene::description::{OutputDescription, RenderDescription, SceneDescription};
+use crate::scene::inputs::{ContentHash, Inputs};
+use crate::scene::world::World;
+use crate::sequence::FrameNumber;
+
+/// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Fingerprint(pub [u8; 16]);
+
+impl fmt::Display for Fingerprint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&hexadecimal(&self.0))
+    }
+}
+
+/// The part of the fingerprints that all frames of a run have in common.
+#[derive(Clone, Debug)]
+pub struct Fingerprints {
+    common: Sha256,
+}
+
+impl Fingerprints {
+    /// Of a scene that is rendered with some settings in place of its own.
+    pub fn new(world: &World, settings: &RenderDescription) -> Self {
+        let mut common = Sha256::new();
+        add(&mut common, env!("CARGO_PKG_VERSION").as_bytes());
+        add(&mut common, what_counts(&world.description, settings).as_bytes());
+        add(&mut common, world.contents.as_flattened());
+        Self { common }
+    }
+
+    /// Of a frame whose own meshes, and the other files that only it is made of, have these contents.
+    pub fn of_frame(
+        &self,
+        number: FrameNumber,
+        meshes: &[ContentHash],
+        others: &[ContentHash],
+    ) -> Fingerprint {
+        let mut hasher = self.common.clone();
+        add(&mut hasher, &number.millionths().to_le_bytes());
+        add(&mut hasher, meshes.as_flattened());
+        add(&mut hasher, others.as_flattened());
+        let mut bits = [0; 16];
+        bits.copy_from_slice(&hasher.finalize()[..16]);
+        Fingerprint(bits)
+    }
+}
+
+/// The length goes first, so that no two lists of texts run into the same bytes.
+fn add(hasher: &mut Sha256, bytes: &[u8]) {
+    hasher.update((bytes.len() as u64).to_le_bytes());
+    hasher.update(bytes);
+}
+
+/// All that a scene says, but for where files are and what only the PNG shows.
+fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String {
+    let mut counts = scene.clone();
+    counts.render = settings.clone();
+    counts.file = PathBuf::new();
+    counts.directory = PathBuf::new();
+    if let Some(frames) = &mut counts.frames {
+        frames.path.clear();
+    }
+    let OutputDescription { mut aovs, .. } = counts.output;
+    aovs.sort_unstable();
+    aovs.dedup();
+    counts.output = OutputDescription { path: None, png: false, exposure: 0.0, aovs };
+    format!("{counts:?}")
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Which frame of which scene a picture is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// What the picture depends on.
+    pub fingerprint: Fingerprint,
+    /// SHA-256 of the bytes of the frame's own meshes, as `sha256sum` prints it, with a space between several.
+    pub mesh_hash: String,
+}
+
+/// The meshes of the next frame.
+#[derive(Debug, Default)]
+struct NextMeshes {
+    /// The files, or why they are not there.
+    files: Vec<Result<(PathBuf, Vec<u8>), String>>,
+    /// After this frame.
+    seconds: f64,
+}
+
+/// The files of a frame as they were read, before anything is made of them.
+#[derive(Debug)]
+pub struct FrameSource {
+    /// The frame's own meshes.
+    pub(super) meshes: Vec<(PathBuf, Vec<u8>)>,
+    /// Those of the next frame, where velocities follow from them.
+    next: Option<NextMeshes>,
+    /// The other files.
+    pub(super) inputs: Inputs,
+    /// What these bytes make of the picture.
+    pub identity: Identity,
+}
+
+impl FrameSource {
+    /// Reads the files of a frame.
+    ///
+    /// # Errors
+    /// When one of them cannot be read.
+    pub fn read(world: &World, fingerprints: &Fingerprints, task: &FrameTask) -> Result<Self, RenderError> {
+        let meshes = task.files.iter().map(|path| task.contents(path)).collect::<Result<Vec<_>, _>>()?;
+        let inputs = Inputs::of_frame(world, task.number)?;
+        let mut source = Self::of(fingerprints, task.number, meshes, inputs);
+        if world.follows_vertices() {
+            source.next = task.next.as_ref().map(|next| {
+                let contents = |path: &PathBuf| match std::fs::read(path) {
+                    Ok(bytes) => Ok((path.clone(), bytes)),
+                    Err(error) => Err(format!("{}: {error}", path.display())),
+                };
+                let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
+                let fps = world.frames().map_or(24.0, |f| f.fps);
+                NextMeshes { files: next.files.iter().map(contents).collect(), seconds: frames / fps }
+            });
+            source.identify(fingerprints, task.number);
+        }
+        Ok(source)
+    }
+
+    /// A frame whose files have been read.
+    pub fn of(
+        fingerprints: &Fingerprints,
+        number: FrameNumber,
+        meshes: Vec<(PathBuf, Vec<u8>)>,
+        inputs: Inputs,
+    ) -> Self {
+        let identity = Identity { fingerprint: Fingerprint([0; 16]), mesh_hash: String::new() };
+        let mut source = Self { meshes, next: None, inputs, identity };
+        source.identify(fingerprints, number);
+        source
+    }
+
+    fn identify(&mut self, fingerprints: &Fingerprints, number: FrameNumber) {
+        let hash = |bytes: &Vec<u8>| -> ContentHash { Sha256::digest(bytes).into() };
+        let hashes: Vec<ContentHash> = self.meshes.iter().map(|(_, bytes)| hash(bytes)).collect();
+        let mut others = self.inputs.hashes();
+        let next = self.next.iter().flat_map(|next| &next.files).flatten();
+        others.extend(next.map(|(_, bytes)| hash(bytes)));
+        let mesh_hash = hashes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
+        let fingerprint = fingerprints.of_frame(number, &hashes, &others);
+        self.identity = Identity { fingerprint, mesh_hash };
+    }
+
+    /// The meshes in the very bytes that were hashed, and the rest.
+    ///
+    /// # Errors
+    /// When a mesh is wrong.
+    pub fn parse(self, world: &World) -> Result<Parsed, RenderError> {
+        let velocity = world.velocity_name();
+        let parse = |(path, bytes): (PathBuf, Vec<u8>)| {
+            let mesh = mesh::parse(&bytes, &velocity, &path).map_err(FrameError::from)?;
+            Ok(FrameMesh { path, mesh })
+        };
+        let mut meshes = self.meshes.into_iter().map(parse).collect::<Result<Vec<_>, RenderError>>()?;
+        let mut warnings = Vec::new();
+        if world.follows_vertices() {
+            let NextMeshes { files, seconds } = self.next.unwrap_or_default();
+            let mut files = files.into_iter();
+            for mesh in &mut meshes {
+                let unknown = follow_next(files.next(), seconds, mesh).err();
+                warnings.extend(unknown.map(|why| format!("{}: {why}; {STANDS_STILL}", mesh.path.display())));
+            }
+        }
+        Ok(Parsed { meshes, inputs: self.inputs, identity: self.identity, warnings })
+    }
+}
+
+const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
+
+/// Takes the velocities of a mesh from the next frame, or tells why not: whatever is wrong with that one, its turn is
+/// still to come.
+fn follow_next(
+    next: Option<Result<(PathBuf, Vec<u8>), String>>,
+    seconds: f64,
+    mesh: &mut FrameMesh,
+) -> Result<(), String> {
+    let (path, bytes) = next.ok_or("there is no next frame to take velocities from")??;
+    let after = mesh::parse(&bytes, &VelocityName::Nothing, &path)
+        .map_err(|e| format!("the next frame cannot be followed: {e}"))?;
+    mesh::follow(&mut mesh.mesh, &after, seconds).map_err(|e| e.to_string())
+}
+
+/// What the files of a frame say.
+#[derive(Debug)]
+pub struct Parsed {
+    /// The frame's own meshes.
+    pub meshes: Vec<FrameMesh>,
+    /// The other files.
+    pub inputs: Inputs,
+    /// Which frame it is.
+    pub identity: Identity,
+    /// What the user should look at.
+    pub warnings: Vec<String>,
+}

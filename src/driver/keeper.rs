@@ -1,0 +1,65 @@
+//! Keeps what is done of a frame: on a timer, when it is asked for, and when the run has to stop.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use super::accumulation::Accumulation;
+use super::checkpoint::Checkpoint;
+use super::interrupt::Interrupt;
+use super::render::Observer;
+use super::tiles::Control;
+
+/// Watches over one frame.
+pub(super) struct Keeper<'a> {
+    pub observer: &'a dyn Observer,
+    pub interrupt: &'a Interrupt,
+    /// Where it is kept; a preview is not.
+    pub checkpoint: Option<&'a Checkpoint>,
+    start: Instant,
+    /// Milliseconds between two checkpoints on the timer, and those from the start to the next one.
+    every: u64,
+    next: AtomicU64,
+}
+
+impl<'a> Keeper<'a> {
+    /// Saves what is done each time that `every` has passed; never on a timer without it.
+    pub fn new(
+        observer: &'a dyn Observer,
+        interrupt: &'a Interrupt,
+        checkpoint: Option<&'a Checkpoint>,
+        every: Option<Duration>,
+    ) -> Self {
+        let every = every.map_or(u64::MAX, |every| u64::try_from(every.as_millis()).unwrap_or(u64::MAX));
+        Self { observer, interrupt, checkpoint, start: Instant::now(), every, next: AtomicU64::new(every) }
+    }
+
+    fn milliseconds(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_millis()).unwrap_or(u64::MAX)
+    }
+}
+
+impl Control for Keeper<'_> {
+    fn progress(&self, done: usize, of: usize) {
+        self.observer.tiles(done, of);
+    }
+
+    fn stops(&self) -> bool {
+        self.interrupt.is_requested()
+    }
+
+    fn wants_save(&self) -> bool {
+        let is_time =
+            || self.interrupt.wants_save() || self.milliseconds() >= self.next.load(Ordering::Relaxed);
+        self.checkpoint.is_some() && is_time()
+    }
+
+    /// A disk that is full is no reason to lose the frame.
+    fn save(&self, accumulation: &Accumulation) {
+        let Some(checkpoint) = self.checkpoint else { return };
+        if let Err(error) = self.interrupt.while_writing(|| checkpoint.save(accumulation)) {
+            self.observer.warning(&format!("no checkpoint: {error}"));
+        }
+        self.next.store(self.milliseconds().saturating_add(self.every), Ordering::Relaxed);
+        self.interrupt.has_saved();
+    }
+}

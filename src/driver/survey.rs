@@ -1,0 +1,73 @@
+//! Which frames are there already.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::checkpoint::Checkpoint;
+use super::error::RenderError;
+use super::fingerprint::{Fingerprints, FrameSource};
+use super::job::{FrameTask, Job};
+use super::picture::{PictureState, picture_path};
+use super::render::{RenderOptions, chosen, not_there};
+use crate::scene::world::World;
+use crate::sequence::FrameNumber;
+
+/// What there is of a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FrameState {
+    /// Its picture, whole.
+    Complete,
+    /// A checkpoint: rendering can go on.
+    Partial,
+    /// Nothing.
+    Missing,
+    /// A whole picture of another scene, other settings or another mesh.
+    Stale,
+    /// A picture that is damaged, with what is wrong.
+    Corrupt(String),
+    /// Its own files cannot be read, with what is wrong.
+    Unreadable(String),
+}
+
+impl FrameState {
+    /// Looks at a frame. Nothing is parsed, and where there is neither picture nor checkpoint nothing is read.
+    pub fn of(world: &World, fingerprints: &Fingerprints, task: &FrameTask, picture: &Path) -> Self {
+        if !picture.exists() && !Checkpoint::path_beside(picture).exists() {
+            return Self::Missing;
+        }
+        let fingerprint = match FrameSource::read(world, fingerprints, task) {
+            Ok(source) => source.identity.fingerprint,
+            Err(error) => return Self::Unreadable(error.to_string()),
+        };
+        match PictureState::of(picture, &fingerprint) {
+            PictureState::Complete => Self::Complete,
+            _ if Checkpoint::of(picture, fingerprint).is_there() => Self::Partial,
+            PictureState::Missing => Self::Missing,
+            PictureState::Stale => Self::Stale,
+            PictureState::Corrupt(reason) => Self::Corrupt(reason),
+        }
+    }
+}
+
+/// What there is of the frames that are asked for, in order, and the pattern of their pictures' names.
+///
+/// # Errors
+/// When the selection leaves no frame.
+pub fn survey(
+    job: &Job,
+    options: &RenderOptions,
+) -> Result<(Vec<(FrameNumber, FrameState)>, String), RenderError> {
+    let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
+    let (tasks, absent) = chosen(job, &RenderOptions { keep_going: true, ..options.clone() })?;
+    let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
+    let state = |task: &FrameTask| {
+        let picture = picture_path(&pattern, task.number);
+        (task.number, FrameState::of(&job.world, &fingerprints, task, &picture))
+    };
+    let mut states: Vec<(FrameNumber, FrameState)> = tasks.par_iter().map(state).collect();
+    let missing = |number| (number, FrameState::Unreadable(not_there(job, number).to_string()));
+    states.extend(absent.into_iter().map(missing));
+    states.sort_by_key(|(number, _)| *number);
+    Ok((states, pattern))
+}

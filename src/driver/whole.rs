@@ -1,0 +1,155 @@
+//! Whether the bytes of a mesh file are all of it.
+//!
+//! Reading checks counts, checksums, indices and numbers. What it cannot see is how a file ends that says nothing about
+//! its length, or whose end was allocated before it was written:
+//!
+//! | the file | what a cut or unwritten end looks like | proof |
+//! |---|---|---|
+//! | gzip | its checksum fails | proven |
+//! | PLY, vertices before faces | too few elements; faces of no corners | proven |
+//! | ... its last byte is 0 | maybe the last face, partly unwritten | plausible |
+//! | ... as text, without a line break at its end | maybe the last number lacks digits | plausible |
+//! | ... ends with 64 zeros or more, or with a vertex of zeros | maybe what is behind the faces | doubtful |
+//! | ... last triangle or last two vertices all zero | unwritten | unreadable |
+//! | OBJ, `.dsc` | fewer faces | plausible |
+//! | ... without a line break at its end | a number that lacks digits | doubtful |
+//! | ... open, or with unused vertices, unlike the frame before | faces are missing | doubtful |
+//! | text with zeros at its end | unwritten | unreadable |
+//!
+//! The truncations of `tests/watch.rs` try every length of each.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::ready::Proof;
+use crate::mesh::{self, Format, MeshError, MeshWarning, Place, RawMesh, Region, Syntax, VelocityName};
+
+/// So many zeros at the end are no record of a mesh any more.
+const ZERO_TAIL: usize = 64;
+
+/// A mesh and how sure it is that nothing of its file is missing.
+#[derive(Clone, Debug)]
+pub struct Inspected {
+    /// The mesh.
+    pub mesh: RawMesh,
+    /// How sure.
+    pub proof: Proof,
+    /// What is doubtful, for a warning.
+    pub doubt: Option<String>,
+    /// Whether the surface is open or leaves vertices unused; known of formats that do not say how long they are.
+    pub loose: Option<bool>,
+}
+
+/// Reads a mesh from the bytes of a file, with velocities of that name; `loose_before` is what was found of another frame.
+///
+/// # Errors
+/// [`MeshError`] when the bytes are no whole mesh.
+pub fn inspect(
+    bytes: &[u8],
+    path: &Path,
+    velocity: &VelocityName,
+    loose_before: Option<bool>,
+) -> Result<Inspected, MeshError> {
+    let format = Format::of(path).ok_or_else(|| malformed(path, "its name promises no known mesh format"))?;
+    let mesh = mesh::read_bytes(bytes, format, velocity, path)?;
+    if format.gzip {
+        return Ok(Inspected { mesh, proof: Proof::Proven, doubt: None, loose: None });
+    }
+    let zeros = bytes.iter().rev().take_while(|&&byte| byte == 0).count();
+    match format.syntax {
+        Syntax::Obj | Syntax::Dsc => inspect_endless(bytes, mesh, path, zeros, loose_before),
+        _ => inspect_counted(bytes, mesh, path, zeros),
+    }
+}
+
+/// A format that says how long it is.
+fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Result<Inspected, MeshError> {
+    let unwritten =
+        mesh.triangles.last() == Some(&[0; 3]) || mesh.positions.last_chunk::<2>() == Some(&[DVec3::ZERO; 2]);
+    if zeros > 0 && unwritten {
+        return Err(malformed(path, "its end is all zeros: allocated, but not written"));
+    }
+    let head = &bytes[..bytes.len().min(1024)];
+    let place = |words: &[u8]| head.windows(words.len()).position(|found| found == words);
+    let cut = place(b"format ascii").is_some() && !bytes.ends_with(b"\n");
+    let vertices_last = place(b"element vertex") > place(b"element face");
+    let last_is_zero = vertices_last && mesh.positions.last() == Some(&DVec3::ZERO);
+    let doubt = (zeros >= ZERO_TAIL || last_is_zero).then(|| format!("{zeros} zeros at its end"));
+    let proof = match (&doubt, zeros > 0 || cut) {
+        (Some(_), _) => Proof::Doubtful,
+        (None, true) => Proof::Plausible,
+        (None, false) => Proof::Proven,
+    };
+    Ok(Inspected { mesh, proof, doubt, loose: None })
+}
+
+/// A text that may end after any line.
+fn inspect_endless(
+    bytes: &[u8],
+    mesh: RawMesh,
+    path: &Path,
+    zeros: usize,
+    loose_before: Option<bool>,
+) -> Result<Inspected, MeshError> {
+    if zeros > 0 {
+        return Err(malformed(path, "its end is all zeros: allocated, but not written"));
+    }
+    let (loose, how) = match Format::of(path).map(|format| format.syntax) {
+        Some(Syntax::Dsc) => (has_unused_corners(bytes), "has vertices that no tetrahedron uses"),
+        _ => (is_loose(bytes, &mesh, path), "is open or has vertices that no face uses"),
+    };
+    let doubt = if !bytes.ends_with(b"\n") {
+        Some("no line break at its end".to_owned())
+    } else if loose && loose_before == Some(false) {
+        Some(format!("it {how}, unlike the frame before"))
+    } else {
+        None
+    };
+    let unknown = loose && loose_before.is_none();
+    let proof = if doubt.is_some() || unknown { Proof::Doubtful } else { Proof::Plausible };
+    Ok(Inspected { mesh, proof, doubt, loose: Some(loose) })
+}
+
+/// Whether the surface of an OBJ file has a rim, or the file vertices that no face uses.
+fn is_loose(bytes: &[u8], mesh: &RawMesh, path: &Path) -> bool {
+    let is_vertex = |line: &&[u8]| line.trim_ascii_start().starts_with(b"v ");
+    if bytes.split(|&byte| byte == b'\n').filter(is_vertex).count() > mesh.positions.len() {
+        return true;
+    }
+    let is_open = |warning: &MeshWarning| matches!(warning, MeshWarning::Open { .. });
+    mesh::prepare(mesh.clone(), Region(1), path).is_ok_and(|(_, warnings)| warnings.iter().any(is_open))
+}
+
+/// Whether a `.dsc` file, which has been read without fault, has vertices that no tetrahedron uses.
+fn has_unused_corners(bytes: &[u8]) -> bool {
+    let mut words = bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    let (mut vertices, mut used) = (0, Vec::new());
+    while let Some(word) = words.next() {
+        if word == b"v" {
+            vertices += 1;
+            words.nth(2);
+            continue;
+        }
+        for corner in words.by_ref().take(4) {
+            let index = std::str::from_utf8(corner).ok().and_then(|text| text.parse::<usize>().ok());
+            used.extend(index);
+        }
+        words.next();
+    }
+    used.sort_unstable();
+    used.dedup();
+    used.len() < vertices
+}
+
+fn malformed(path: &Path, problem: &str) -> MeshError {
+    MeshError::Malformed {
+        path: path.into(),
+        place: Place::File,
+        problem: problem.into(),
+        cure: "wait for its writer or write it again",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+//! The files that a scene names, each read once, so that what is parsed is what was hashed: files may change at any time.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use super::error::FrameError;
+use super::world::World;
+use crate::light::{ImageError, Picture};
+use crate::mesh::{self, MeshError, RawMesh, VelocityName};
+use crate::optics::volume::{self, Volume, VolumeError};
+use crate::sequence::FrameNumber;
+
+/// SHA-256 of the contents of a file.
+pub type ContentHash = [u8; 32];
+
+/// Contents of files in the order in which they were first asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Inputs {
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl Inputs {
+    /// Every file that only one frame is made of, its own mesh aside.
+    ///
+    /// # Errors
+    /// When one cannot be read, or a pattern cannot be filled in.
+    pub fn of_frame(world: &World, number: FrameNumber) -> Result<Self, FrameError> {
+        let mut inputs = Self::default();
+        for path in world.surfaces_of_frame(number) {
+            inputs.mesh_bytes(&path?.1)?;
+        }
+        for path in world.grids_of_frame(number) {
+            inputs.volume_bytes(&path?)?;
+        }
+        Ok(inputs)
+    }
+
+    /// The hash of each file.
+    pub fn hashes(&self) -> Vec<ContentHash> {
+        self.files.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect()
+    }
+
+    pub(super) fn mesh(&mut self, path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
+        mesh::parse(self.mesh_bytes(path)?, velocity, path)
+    }
+
+    pub(super) fn volume(&mut self, path: &Path) -> Result<Volume, VolumeError> {
+        volume::read_bytes(self.volume_bytes(path)?, path)
+    }
+
+    pub(super) fn picture(&mut self, path: &Path) -> Result<Picture, ImageError> {
+        let bytes = self.bytes(path).map_err(|source| ImageError::Io { path: path.into(), source })?;
+        Picture::read_bytes(bytes, path)
+    }
+
+    fn mesh_bytes(&mut self, path: &Path) -> Result<&[u8], MeshError> {
+        self.bytes(path).map_err(|source| MeshError::Io { path: path.into(), source })
+    }
+
+    fn volume_bytes(&mut self, path: &Path) -> Result<&[u8], VolumeError> {
+        self.bytes(path).map_err(|source| VolumeError::Io { path: path.into(), source })
+    }
+
+    fn bytes(&mut self, path: &Path) -> io::Result<&[u8]> {
+        let at = match self.files.iter().position(|(known, _)| known == path) {
+            Some(at) => at,
+            None => {
+                self.files.push((path.into(), std::fs::read(path)?));
+                self.files.len() - 1
+            }
+        };
+        Ok(&self.files[at].1)
+    }
+}
