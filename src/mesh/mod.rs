@@ -11,6 +11,7 @@ pub mod canonical;
 pub mod normals;
 pub mod topology;
 
+mod bobj;
 mod coincident;
 mod corner_classes;
 pub(crate) mod disjoint;
@@ -20,10 +21,14 @@ mod error;
 mod limits;
 mod obj;
 mod ply;
+mod polygons;
 mod prepare;
 mod read;
+mod stl;
 mod velocity;
+mod vtk;
 mod weld;
+mod words;
 
 pub use error::{MeshError, Place};
 pub use prepare::{MeshWarning, prepare};
