@@ -200,6 +200,7 @@ mod tests {
         for format in FORMATS {
             let lower = format!("dir.gz/a{}", format.extension());
             assert_eq!(Format::of(Path::new(&lower)), Some(format));
+            assert!(crate::sequence::is_frame_name(&lower), "{lower} is no frame of a folder");
             assert_eq!(Format::of(Path::new(&lower.to_uppercase())), Some(format));
         }
         for other in ["a.gz", "a.vtu", "a_bobj", "ply", "a.ply.bak", ""] {
