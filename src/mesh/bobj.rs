@@ -98,31 +98,30 @@ fn vectors(bytes: &[u8]) -> Vec<Vec3> {
 }
 
 fn positions(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
-    let finite = |(index, triple): (usize, [[u8; 4]; 3])| {
-        let position = Vec3::from_array(triple.map(f32::from_le_bytes)).as_dvec3();
-        if position.is_finite() {
-            return Ok(position);
+    let positions: Vec<DVec3> = vectors(bytes).into_iter().map(Vec3::as_dvec3).collect();
+    match positions.iter().position(|position| !position.is_finite()) {
+        None => Ok(positions),
+        Some(index) => {
+            let problem = format!("the coordinates {} are not finite", positions[index]);
+            let cure = "the simulation or its writer failed here; coordinates must be finite";
+            Err(Fault::invalid(Place::element("vertex", index), problem, cure))
         }
-        let problem = format!("the coordinates {position} are not finite");
-        let cure = "the simulation or its writer failed here; coordinates must be finite";
-        Err(Fault::invalid(Place::element("vertex", index), problem, cure))
-    };
-    triples(bytes).enumerate().map(finite).collect()
+    }
 }
 
 fn triangles(bytes: &[u8], vertices: usize) -> Result<Vec<[u32; 3]>, Fault> {
-    let checked = |(t, triple): (usize, [[u8; 4]; 3])| {
-        let triangle = triple.map(i32::from_le_bytes);
-        match triangle.iter().find(|&&index| usize::try_from(index).map_or(true, |index| index >= vertices)) {
-            None => Ok(triangle.map(i32::cast_unsigned)),
-            Some(index) => {
-                let problem = format!("vertex index {index}, but there are {vertices} vertices");
-                let cure = "indices count from 0; write the file again";
-                Err(Fault::invalid(Place::element("triangle", t), problem, cure))
-            }
+    // A negative index read without its sign is at least 2^31, and so out of range.
+    let most = vertices.min(1 << 31);
+    let triangles: Vec<[u32; 3]> = triples(bytes).map(|triple| triple.map(u32::from_le_bytes)).collect();
+    match triangles.iter().position(|triangle| triangle.iter().any(|&index| index as usize >= most)) {
+        None => Ok(triangles),
+        Some(t) => {
+            let wrong = triangles[t].into_iter().find(|&index| index as usize >= most).unwrap_or_default();
+            let problem = format!("vertex index {}, but there are {vertices} vertices", wrong.cast_signed());
+            let cure = "indices count from 0; write the file again";
+            Err(Fault::invalid(Place::element("triangle", t), problem, cure))
         }
-    };
-    triples(bytes).enumerate().map(checked).collect()
+    }
 }
 
 fn corner_normals(bytes: &[u8], vertices: usize) -> Result<Option<CornerNormals>, Fault> {

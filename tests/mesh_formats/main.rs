@@ -186,13 +186,17 @@ fn counts_that_no_file_holds_are_refused_at_once() {
                 files.push([&bytes[..at], &count, &bytes[at + 4..]].concat());
             }
         }
-        let started = Instant::now();
         for file in &files {
-            let _ = read(file, syntax);
+            // These have 4 kB at most, which take microseconds. On a busy machine a reading may have to wait: then
+            // another one tells.
+            let time = || {
+                let started = Instant::now();
+                let _ = read(file, syntax);
+                started.elapsed()
+            };
+            let quick = (0..5).any(|_| time() < Duration::from_millis(10));
+            assert!(quick, "{name}: {:?}", read(file, syntax).err());
         }
-        // A file of 2 GB would be 2 s of zeros; these have 3 kB, which take microseconds.
-        let each = started.elapsed() / files.len() as u32;
-        assert!(each < Duration::from_millis(10), "{name}: {each:?}");
     }
 }
 

@@ -140,7 +140,11 @@ impl Cells {
                 let problem = format!("{corners} corners are announced, {} numbers are left", after.len());
                 return Err(Fault::malformed(place, problem, cure));
             };
-            cells.connectivity.extend(wholes(run, "corner")?);
+            for &corner in run {
+                let index =
+                    whole(corner).ok_or_else(|| not_whole(corner, "corner", cells.connectivity.len()))?;
+                cells.connectivity.push(index);
+            }
             cells.offsets.push(cells.connectivity.len());
             rest = after;
         }
@@ -154,11 +158,13 @@ impl Cells {
 
 /// Numbers that must all be whole.
 pub(super) fn wholes(values: &[f64], name: &str) -> Result<Vec<i64>, Fault> {
-    let integer = |(index, &value): (usize, &f64)| {
-        whole(value).ok_or_else(|| {
-            let problem = format!("{value} is no whole number");
-            Fault::malformed(Place::element(name, index), problem, "write the file again")
-        })
-    };
-    values.iter().enumerate().map(integer).collect()
+    match values.iter().position(|&value| whole(value).is_none()) {
+        Some(index) => Err(not_whole(values[index], name, index)),
+        None => Ok(values.iter().map(|&value| value as i64).collect()),
+    }
+}
+
+fn not_whole(value: f64, name: &str, index: usize) -> Fault {
+    let problem = format!("{value} is no whole number");
+    Fault::malformed(Place::element(name, index), problem, "write the file again")
 }

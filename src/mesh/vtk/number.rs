@@ -69,18 +69,28 @@ impl NumberType {
 
     /// The numbers in bytes. Whole ones beyond 2^53 are rounded; they are no index and no label anyway.
     pub fn read(self, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
-        bytes.chunks_exact(self.size()).map(|bytes| self.value(unsigned(bytes, order))).collect()
-    }
-
-    fn value(self, bits: u64) -> f64 {
+        macro_rules! numbers {
+            ($number:ty) => {{
+                let (numbers, _) = bytes.as_chunks::<{ size_of::<$number>() }>();
+                match order {
+                    ByteOrder::Little => {
+                        numbers.iter().map(|b| <$number>::from_le_bytes(*b) as f64).collect()
+                    }
+                    ByteOrder::Big => numbers.iter().map(|b| <$number>::from_be_bytes(*b) as f64).collect(),
+                }
+            }};
+        }
         match self {
-            Self::I8 => f64::from(bits as i8),
-            Self::I16 => f64::from(bits as i16),
-            Self::I32 => f64::from(bits as i32),
-            Self::I64 => bits as i64 as f64,
-            Self::U8 | Self::U16 | Self::U32 | Self::U64 => bits as f64,
-            Self::F32 => f64::from(f32::from_bits(bits as u32)),
-            Self::F64 => f64::from_bits(bits),
+            Self::I8 => numbers!(i8),
+            Self::U8 => numbers!(u8),
+            Self::I16 => numbers!(i16),
+            Self::U16 => numbers!(u16),
+            Self::I32 => numbers!(i32),
+            Self::U32 => numbers!(u32),
+            Self::I64 => numbers!(i64),
+            Self::U64 => numbers!(u64),
+            Self::F32 => numbers!(f32),
+            Self::F64 => numbers!(f64),
         }
     }
 }

@@ -32,8 +32,13 @@ struct Faces {
 }
 
 impl Faces {
-    fn add(&mut self, indices: &[i64], shape: Shape, points: usize, place: Place) -> Result<(), Fault> {
-        let place = || place.clone();
+    fn add(
+        &mut self,
+        indices: &[i64],
+        shape: Shape,
+        points: usize,
+        place: impl Fn() -> Place,
+    ) -> Result<(), Fault> {
         let wanted = match shape {
             Shape::Polygon(corners) => corners,
             Shape::Pixel => Some(4),
@@ -95,7 +100,7 @@ fn add_lists(faces: &mut Faces, lists: &[Cells; 4], points: usize) -> Result<(),
     check_cells(lists.iter().map(Cells::len).sum())?;
     for (cells, (name, shape)) in lists.iter().zip(shapes) {
         for (index, indices) in cells.iter().enumerate() {
-            faces.add(indices, shape, points, Place::element(name, index))?;
+            faces.add(indices, shape, points, || Place::element(name, index))?;
         }
     }
     Ok(())
@@ -108,7 +113,7 @@ fn add_typed(faces: &mut Faces, cells: &Cells, types: &[i64], points: usize) -> 
     }
     check_cells(cells.len())?;
     for (index, (indices, &cell_type)) in cells.iter().zip(types).enumerate() {
-        let place = Place::element("cell", index);
+        let place = || Place::element("cell", index);
         let shape = match cell_type {
             0..=4 => Shape::Skipped,
             5 => Shape::Polygon(Some(3)),
@@ -120,7 +125,7 @@ fn add_typed(faces: &mut Faces, cells: &Cells, types: &[i64], points: usize) -> 
                 let problem =
                     format!("a cell of type {cell_type}{}, which is no flat face", name_of(cell_type));
                 let cure = "extract the surface or an isosurface and write that (ParaView: Extract Surface, Contour)";
-                return Err(Fault::unsupported(place, problem, cure));
+                return Err(Fault::unsupported(place(), problem, cure));
             }
         };
         faces.add(indices, shape, points, place)?;

@@ -49,7 +49,7 @@ impl<'a> Encoded<'a> {
     /// Base64 with any white space in it.
     pub fn base64(text: &'a str) -> Self {
         let text = text.trim();
-        if text.contains(|c: char| c.is_ascii_whitespace()) {
+        if text.as_bytes().iter().any(u8::is_ascii_whitespace) {
             return Self::Base64(Cow::Owned(text.bytes().filter(|b| !b.is_ascii_whitespace()).collect()));
         }
         Self::Base64(Cow::Borrowed(text.as_bytes()))

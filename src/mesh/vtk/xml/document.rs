@@ -113,7 +113,8 @@ pub(super) struct Document<'a> {
 
 impl<'a> Document<'a> {
     pub fn of(bytes: &'a [u8]) -> Result<Self, Fault> {
-        let start = bytes.windows(APPENDED.len()).position(|window| window == APPENDED);
+        let mut tags = (0..bytes.len()).filter(|&at| bytes[at] == b'<');
+        let start = tags.find(|&at| bytes[at..].starts_with(APPENDED));
         let end = start.and_then(|start| Some(start + bytes[start..].iter().position(|&b| b == b'>')? + 1));
         if let (Some(_), None) = (start, end) {
             let problem = "the file ends within the tag AppendedData";
