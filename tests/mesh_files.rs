@@ -12,7 +12,9 @@ use floe::mesh::canonical::canonical;
 use floe::mesh::topology::topology;
 use floe::mesh::{
     FORMATS, Format, MeshError, MeshWarning, RawMesh, Region, VelocityName, prepare, read, read_bytes,
+    read_with,
 };
+use glam::DVec3;
 use proptest::prelude::*;
 
 /// The files of a folder and of the folders in it, in the order of their names.
@@ -114,6 +116,27 @@ fn messages_name_the_place() {
         ("label_missing.dsc", "line 10: "),
         ("three_share_a_face.dsc", "lines 9, 10, 11"),
         ("repeated.dsc", "line 11: the tetrahedron of line 9"),
+        ("points_2e9.vtk", "point 20: the file ends early: 2000000000 are declared"),
+        ("points_170e6_binary.vtk", "point 8: the file ends early: 170000000 are declared"),
+        ("word.vtk", "line 6: 'one' is not a number"),
+        ("nan.vtk", "point 7: the coordinates [1, 1, NaN]"),
+        ("index_8.vtk", "polygon 0: vertex index 8"),
+        ("section_binary.vtk", "byte 172: 'polygns' where a section begins"),
+        ("tetrahedra.vtk", "cell 0: a cell of type 10 (tetrahedron)"),
+        ("tetrahedra.vtk", "extract the surface"),
+        ("label_fraction.vtk", "cell 2: label 0.5"),
+        ("offsets_fall.vtk", "offset 2: 3, behind 4"),
+        ("points_2e9.vtp", "line 5: array 'Points': 24 numbers, but 6000000000 are declared"),
+        ("inline_2e9.vtp", "line 5: array 'Points': 1999999996 bytes are announced"),
+        ("zlib_total_2e9.vtp", "line 5: array 'Points': compressed bytes hold 1999999992, more than 671"),
+        ("appended_offset.vtp", "line 5: array 'Points': offset 5000, but"),
+        ("tag_mismatch.vtp", "line 6: no XML"),
+        ("two_pieces.vtp", "line 11: a second piece"),
+        ("word.stl", "line 6: 'up' is not a coordinate"),
+        ("binary_2e9.stl", "the file has 984 bytes, a binary one of 40000000 triangles has 2000000084"),
+        ("nan_binary.stl", "triangle 0: "),
+        ("vertices_2e9.bobj", "vertex 9: the file ends early: 166666666 are declared"),
+        ("index_8.bobj", "triangle 0: vertex index 8"),
     ] {
         assert!(message(name).contains(place), "{place:?} is not in: {}", message(name));
     }
@@ -121,7 +144,7 @@ fn messages_name_the_place() {
 
 #[test]
 fn names_without_a_format_are_refused() {
-    let error = read(Path::new("tests/data/meshes/cube.stl")).unwrap_err();
+    let error = read(Path::new("tests/data/meshes/cube.vtu")).unwrap_err();
     assert!(matches!(error, MeshError::Unsupported { .. }));
     assert!(error.to_string().contains(".ply"), "{error}");
 }
@@ -186,6 +209,25 @@ fn by_labels(mesh: &RawMesh) -> BTreeMap<(i32, i32), usize> {
     counts
 }
 
+/// Area, volume and bounds.
+fn measures(mesh: &RawMesh) -> ([f64; 2], [DVec3; 2]) {
+    let (mut area, mut volume) = (0.0, 0.0);
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|index| mesh.positions[index as usize]);
+        area += 0.5 * (b - a).cross(c - a).length();
+        volume += a.dot(b.cross(c)) / 6.0;
+        (min, max) = (min.min(a).min(b).min(c), max.max(a).max(b).max(c));
+    }
+    ([area, volume], [min, max])
+}
+
+/// The greatest speed, in units per second.
+fn fastest(mesh: &RawMesh) -> Option<f32> {
+    let speeds = mesh.velocities.as_ref()?.iter().map(|velocity| velocity.length());
+    Some(speeds.fold(0.0, f32::max))
+}
+
 /// Reads a whole folder of meshes and prints what is in them.
 #[test]
 #[ignore = "reads the folder that the variable FLOE_MESHES names"]
@@ -194,19 +236,25 @@ fn every_mesh_of_a_folder_reads() {
     let mut failed = 0;
     for path in files(Path::new(&folder)).iter().filter(|path| Format::of(path).is_some()) {
         let started = Instant::now();
-        let mesh = read(path);
+        let mesh = read_with(path, &VelocityName::Known);
         let read_time = started.elapsed();
         let result = mesh.and_then(|mesh| prepare(mesh, Region(1), path));
         let prepare_time = started.elapsed() - read_time;
         match result {
             Ok((mesh, warnings)) => {
                 let report = topology(&mesh);
+                let ([area, volume], [min, max]) = measures(&mesh);
                 println!(
-                    "{}: {} vertices, {} triangles {:?}, open {}, inconsistent {}, non-manifold {}, components {}, read in {:.1?}, prepared in {:.1?}",
+                    "{}: {} vertices, {} triangles {:?}, area {:.7e}, volume {:.7e}, bounds {} to {}, velocities up to {:?}, open {}, inconsistent {}, non-manifold {}, components {}, read in {:.1?}, prepared in {:.1?}",
                     path.display(),
                     mesh.positions.len(),
                     mesh.triangles.len(),
                     by_labels(&mesh),
+                    area,
+                    volume,
+                    min,
+                    max,
+                    fastest(&mesh),
                     report.open_edges,
                     report.inconsistent_edges,
                     report.non_manifold_edges,

@@ -131,7 +131,7 @@ impl FrameSource {
     /// When one of them cannot be read.
     pub fn read(world: &World, fingerprints: &Fingerprints, task: &FrameTask) -> Result<Self, RenderError> {
         let meshes = task.files.iter().map(|path| task.contents(path)).collect::<Result<Vec<_>, _>>()?;
-        let inputs = Inputs::of_frame(world, task.number)?;
+        let inputs = Inputs::of_frame(world, task.number, &task.files)?;
         let mut source = Self::of(fingerprints, task.number, meshes, inputs);
         if world.follows_vertices() {
             source.next = task.next.as_ref().map(|next| {
@@ -179,7 +179,8 @@ impl FrameSource {
     pub fn parse(self, world: &World) -> Result<Parsed, RenderError> {
         let velocity = world.velocity_name();
         let parse = |(path, bytes): (PathBuf, Vec<u8>)| {
-            let mesh = mesh::parse(&bytes, &velocity, &path).map_err(FrameError::from)?;
+            let mut mesh = mesh::parse(&bytes, &velocity, &path).map_err(FrameError::from)?;
+            self.inputs.add_velocities(&mut mesh, &path, &velocity).map_err(FrameError::from)?;
             Ok(FrameMesh { path, mesh })
         };
         let mut meshes = self.meshes.into_iter().map(parse).collect::<Result<Vec<_>, RenderError>>()?;

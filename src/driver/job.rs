@@ -1,6 +1,5 @@
 //! Opens what the user points at: a scene file, a folder with one, or a folder of frames.
 
-use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use glam::DVec3;
@@ -60,10 +59,10 @@ impl FrameTask {
     /// # Errors
     /// When one cannot be read.
     pub fn read(&self, velocity: &VelocityName) -> Result<Vec<FrameMesh>, RenderError> {
-        let read = |path: &PathBuf| {
-            let (path, bytes) = self.contents(path)?;
-            let mesh = mesh::parse(&bytes, velocity, &path).map_err(FrameError::from)?;
-            Ok(FrameMesh { path, mesh })
+        let read = |path: &PathBuf| match mesh::read_with(path, velocity) {
+            Ok(mesh) => Ok(FrameMesh { path: path.clone(), mesh }),
+            Err(error) if error.is_not_found() => Err(self.missing(path, error)),
+            Err(error) => Err(FrameError::from(error).into()),
         };
         self.files.iter().map(read).collect()
     }
@@ -72,11 +71,16 @@ impl FrameTask {
     pub(super) fn contents(&self, path: &Path) -> Result<(PathBuf, Vec<u8>), RenderError> {
         match std::fs::read(path) {
             Ok(bytes) => Ok((path.into(), bytes)),
-            Err(error) if self.files.len() > 1 && error.kind() == ErrorKind::NotFound => {
-                Err(RenderError::MissingMesh { path: path.into(), number: self.number })
-            }
-            Err(source) => Err(FrameError::from(MeshError::Io { path: path.into(), source }).into()),
+            Err(source) => Err(self.missing(path, MeshError::Io { path: path.into(), source })),
         }
+    }
+
+    /// Of several meshes one that is not there is missed.
+    fn missing(&self, path: &Path, error: MeshError) -> RenderError {
+        if self.files.len() > 1 && error.is_not_found() {
+            return RenderError::MissingMesh { path: path.into(), number: self.number };
+        }
+        FrameError::from(error).into()
     }
 }
 

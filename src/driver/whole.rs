@@ -65,14 +65,15 @@ pub fn inspect(
 
 /// A format that says how long it is.
 fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Result<Inspected, MeshError> {
-    let unwritten =
-        mesh.triangles.last() == Some(&[0; 3]) || mesh.positions.last_chunk::<2>() == Some(&[DVec3::ZERO; 2]);
+    let unwritten = mesh.triangles.last().is_some_and(|[a, b, c]| a == b && b == c)
+        || mesh.positions.last_chunk::<2>() == Some(&[DVec3::ZERO; 2]);
     if zeros > 0 && unwritten {
         return Err(malformed(path, "its end is all zeros: allocated, but not written"));
     }
     let head = &bytes[..bytes.len().min(1024)];
     let place = |words: &[u8]| head.windows(words.len()).position(|found| found == words);
-    let cut = place(b"format ascii").is_some() && !bytes.ends_with(b"\n");
+    let is_text = place(b"format ascii").or(place(b"\nASCII")).is_some();
+    let cut = is_text && !bytes.ends_with(b"\n");
     let vertices_last = place(b"element vertex") > place(b"element face");
     let last_is_zero = vertices_last && mesh.positions.last() == Some(&DVec3::ZERO);
     let doubt = (zeros >= ZERO_TAIL || last_is_zero).then(|| format!("{zeros} zeros at its end"));

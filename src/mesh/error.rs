@@ -95,6 +95,8 @@ pub enum Place {
     File,
     /// A line of text; in a compressed file, of the text inside.
     Line(usize),
+    /// A byte from the beginning, where binary data came before; in a compressed file, of the data inside.
+    Byte(usize),
     /// An element of a list that the file declares.
     Element {
         /// The name of the list, such as `vertex`.
@@ -115,6 +117,7 @@ impl fmt::Display for Place {
         match self {
             Self::File => Ok(()),
             Self::Line(line) => write!(f, "line {line}: "),
+            Self::Byte(byte) => write!(f, "byte {byte}: "),
             Self::Element { name, index } => write!(f, "{name} {index}: "),
         }
     }

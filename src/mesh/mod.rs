@@ -11,6 +11,7 @@ pub mod canonical;
 pub mod normals;
 pub mod topology;
 
+mod bobj;
 mod coincident;
 mod corner_classes;
 pub(crate) mod disjoint;
@@ -21,15 +22,21 @@ mod follow;
 mod limits;
 mod obj;
 mod ply;
+mod polygons;
 mod prepare;
 mod read;
+mod stl;
 mod velocity;
+mod vtk;
 mod weld;
+mod words;
 
 pub use error::{MeshError, Place};
 pub use follow::{NotFollowed, follow};
 pub use prepare::{MeshWarning, prepare};
-pub use read::{FORMATS, Format, Syntax, parse, read, read_bytes};
+pub use read::{
+    FORMATS, Format, Syntax, add_velocities, parse, read, read_bytes, read_with, velocities_beside,
+};
 pub use velocity::{VelocityName, VelocityProperty};
 pub use weld::weld;
 

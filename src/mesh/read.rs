@@ -2,13 +2,13 @@
 
 use std::fs;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
 use super::error::{Fault, MeshError, Place};
 use super::limits::decompressed_limit;
-use super::{RawMesh, VelocityName, dsc, obj, ply};
+use super::{RawMesh, VelocityName, bobj, dsc, obj, ply, stl, vtk};
 
 /// How a mesh is written down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,14 @@ pub enum Syntax {
     Obj,
     /// Tetrahedra of a deformable simplicial complex.
     Dsc,
+    /// Legacy VTK.
+    Vtk,
+    /// VTK's XML for polygons.
+    Vtp,
+    /// Stereolithography.
+    Stl,
+    /// Binary OBJ of Mantaflow and FLIP Fluids.
+    Bobj,
 }
 
 /// A file format: a syntax, compressed or not.
@@ -31,26 +39,36 @@ pub struct Format {
 }
 
 /// Every format that can be read.
-pub const FORMATS: [Format; 6] = [
+pub const FORMATS: [Format; 14] = [
     Format { syntax: Syntax::Ply, gzip: false },
     Format { syntax: Syntax::Obj, gzip: false },
     Format { syntax: Syntax::Dsc, gzip: false },
+    Format { syntax: Syntax::Vtk, gzip: false },
+    Format { syntax: Syntax::Vtp, gzip: false },
+    Format { syntax: Syntax::Stl, gzip: false },
+    Format { syntax: Syntax::Bobj, gzip: false },
     Format { syntax: Syntax::Ply, gzip: true },
     Format { syntax: Syntax::Obj, gzip: true },
     Format { syntax: Syntax::Dsc, gzip: true },
+    Format { syntax: Syntax::Vtk, gzip: true },
+    Format { syntax: Syntax::Vtp, gzip: true },
+    Format { syntax: Syntax::Stl, gzip: true },
+    Format { syntax: Syntax::Bobj, gzip: true },
 ];
 
 impl Format {
     /// What file names of this format end with, in lower case.
     pub fn extension(self) -> &'static str {
-        match (self.syntax, self.gzip) {
-            (Syntax::Ply, false) => ".ply",
-            (Syntax::Obj, false) => ".obj",
-            (Syntax::Dsc, false) => ".dsc",
-            (Syntax::Ply, true) => ".ply.gz",
-            (Syntax::Obj, true) => ".obj.gz",
-            (Syntax::Dsc, true) => ".dsc.gz",
-        }
+        let (plain, compressed) = match self.syntax {
+            Syntax::Ply => (".ply", ".ply.gz"),
+            Syntax::Obj => (".obj", ".obj.gz"),
+            Syntax::Dsc => (".dsc", ".dsc.gz"),
+            Syntax::Vtk => (".vtk", ".vtk.gz"),
+            Syntax::Vtp => (".vtp", ".vtp.gz"),
+            Syntax::Stl => (".stl", ".stl.gz"),
+            Syntax::Bobj => (".bobj", ".bobj.gz"),
+        };
+        if self.gzip { compressed } else { plain }
     }
 
     /// The format that a file's name promises, whatever the case of its letters.
@@ -69,7 +87,21 @@ pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
     parse(&bytes, &VelocityName::Nothing, path)
 }
 
-/// Reads a mesh from contents of a file that were read before, with velocities of that name where it has them.
+/// Reads a mesh from a file with velocities, where it has them or where a file beside it does.
+///
+/// # Errors
+/// Those of [`read()`], for either file.
+pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
+    let bytes =
+        |path: &Path| fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source });
+    let mut mesh = parse(&bytes(path)?, velocity, path)?;
+    if let Some(beside) = velocities_beside(path, velocity) {
+        add_velocities(&mut mesh, &bytes(&beside)?, &beside)?;
+    }
+    Ok(mesh)
+}
+
+/// Reads a mesh from contents of a file that were read before, with velocities of that name where it has them itself.
 ///
 /// # Errors
 /// [`MeshError`] when the file's name promises no known format, or the contents are wrong.
@@ -78,11 +110,30 @@ pub fn parse(bytes: &[u8], velocity: &VelocityName, path: &Path) -> Result<RawMe
         Fault::unsupported(
             Place::File,
             "the file name promises no known mesh format",
-            "the known ones end with .ply, .obj or .dsc, each also with .gz behind it",
+            "the known ones end with .ply, .obj, .dsc, .vtk, .vtp, .stl or .bobj, each also with .gz behind it",
         )
         .in_file(path)
     })?;
     read_bytes(bytes, format, velocity, path)
+}
+
+/// The file beside a mesh that has its velocities, if there is one and it is asked for.
+pub fn velocities_beside(mesh: &Path, velocity: &VelocityName) -> Option<PathBuf> {
+    let is_asked = velocity.find(&["velocity"], &[]).is_some();
+    let may_have = Format::of(mesh).is_some_and(|format| format.syntax == Syntax::Bobj);
+    if is_asked && may_have { bobj::velocity_file(mesh) } else { None }
+}
+
+/// Gives a mesh the velocities of the file beside it.
+///
+/// # Errors
+/// [`MeshError`] when the contents are wrong, or of another number of vertices.
+pub fn add_velocities(mesh: &mut RawMesh, bytes: &[u8], path: &Path) -> Result<(), MeshError> {
+    let gzip = Format::of(path).is_some_and(|format| format.gzip);
+    let vertices = mesh.positions.len();
+    let velocities = inside(bytes, gzip, |bytes| bobj::read_velocities(bytes, vertices));
+    mesh.velocities = Some(velocities.map_err(|fault| fault.in_file(path))?);
+    Ok(())
 }
 
 /// Reads a mesh from the contents of a file; `path` is only named in messages.
@@ -95,19 +146,28 @@ pub fn read_bytes(
     velocity: &VelocityName,
     path: &Path,
 ) -> Result<RawMesh, MeshError> {
-    let mesh = if format.gzip {
-        decompress(bytes).and_then(|inside| read_syntax(&inside, format.syntax, velocity))
-    } else {
-        read_syntax(bytes, format.syntax, velocity)
-    };
+    let mesh = inside(bytes, format.gzip, |bytes| read_syntax(bytes, format.syntax, velocity));
     mesh.map_err(|fault| fault.in_file(path))
 }
 
+/// Reads from what is inside a file, compressed or not.
+fn inside<T>(bytes: &[u8], gzip: bool, read: impl FnOnce(&[u8]) -> Result<T, Fault>) -> Result<T, Fault> {
+    if gzip { read(&decompress(bytes)?) } else { read(bytes) }
+}
+
 fn read_syntax(bytes: &[u8], syntax: Syntax, velocity: &VelocityName) -> Result<RawMesh, Fault> {
+    if bytes.is_empty() {
+        let cure = "wait for its writer or write it again";
+        return Err(Fault::malformed(Place::File, "the file is empty", cure));
+    }
     match syntax {
         Syntax::Ply => ply::read(bytes, velocity),
         Syntax::Obj => obj::read(bytes),
         Syntax::Dsc => dsc::read(bytes),
+        Syntax::Vtk => vtk::read_legacy(bytes, velocity),
+        Syntax::Vtp => vtk::read_xml(bytes, velocity),
+        Syntax::Stl => stl::read(bytes),
+        Syntax::Bobj => bobj::read(bytes),
     }
 }
 
@@ -159,9 +219,10 @@ mod tests {
         for format in FORMATS {
             let lower = format!("dir.gz/a{}", format.extension());
             assert_eq!(Format::of(Path::new(&lower)), Some(format));
+            assert!(crate::sequence::is_frame_name(&lower), "{lower} is no frame of a folder");
             assert_eq!(Format::of(Path::new(&lower.to_uppercase())), Some(format));
         }
-        for other in ["a.gz", "a.bobj.gz", "a.stl", "ply", "a.ply.bak", ""] {
+        for other in ["a.gz", "a.vtu", "a_bobj", "ply", "a.ply.bak", ""] {
             assert_eq!(Format::of(Path::new(other)), None, "{other}");
         }
     }

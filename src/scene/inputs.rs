@@ -22,12 +22,15 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Every file that only one frame is made of, its own mesh aside.
+    /// Every file that only one frame is made of, its own `meshes` aside but not the velocities beside them.
     ///
     /// # Errors
     /// When one cannot be read, or a pattern cannot be filled in.
-    pub fn of_frame(world: &World, number: FrameNumber) -> Result<Self, FrameError> {
+    pub fn of_frame(world: &World, number: FrameNumber, meshes: &[PathBuf]) -> Result<Self, FrameError> {
         let mut inputs = Self::default();
+        for path in meshes.iter().filter_map(|mesh| mesh::velocities_beside(mesh, &world.velocity_name())) {
+            inputs.mesh_bytes(&path)?;
+        }
         for path in world.surfaces_of_frame(number) {
             inputs.mesh_bytes(&path?.1)?;
         }
@@ -44,6 +47,21 @@ impl Inputs {
 
     pub(super) fn mesh(&mut self, path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
         mesh::parse(self.mesh_bytes(path)?, velocity, path)
+    }
+
+    /// Gives a mesh the velocities of the file beside it, if that is among these.
+    ///
+    /// # Errors
+    /// When it is wrong.
+    pub fn add_velocities(
+        &self,
+        mesh: &mut RawMesh,
+        path: &Path,
+        velocity: &VelocityName,
+    ) -> Result<(), MeshError> {
+        let beside = mesh::velocities_beside(path, velocity);
+        let known = beside.and_then(|path| self.files.iter().find(|(known, _)| *known == path));
+        known.map_or(Ok(()), |(path, bytes)| mesh::add_velocities(mesh, bytes, path))
     }
 
     pub(super) fn volume(&mut self, path: &Path) -> Result<Volume, VolumeError> {

@@ -1,7 +1,7 @@
 //! Which files are frames, and in which order.
 //!
 //! A sequence is named by a pattern (`frame_####.ply`, `frame_%04d.ply`, `frame_$F4.ply`), a glob
-//! (`frame_*.ply`) or a folder. [`discover`] finds its files in ascending order of their [`FrameNumber`]s.
+//! (`frame_*.ply`, `cut/*/surface.vtp`) or a folder. [`discover`] finds its files in ascending order of their [`FrameNumber`]s.
 //! Padding never matters for the order, gaps are allowed, and whatever is ambiguous (two files of one number,
 //! two kinds of names in one folder) is an error that names both files rather than a guess.
 //!
@@ -9,9 +9,11 @@
 //! pictures.
 
 mod error;
+mod folders;
 mod frames;
 mod gaps;
 mod glob;
+mod name;
 mod number;
 mod output;
 mod pattern;
@@ -22,6 +24,8 @@ use std::path::PathBuf;
 pub use error::SequenceError;
 pub use frames::{discover, is_sequence};
 pub use gaps::{Gap, gaps};
+#[cfg(test)]
+pub(crate) use name::is_frame_name;
 pub use number::FrameNumber;
 pub use output::{check_output_pattern, frame_path, has_place, output_path};
 pub use selection::{FrameSelection, format_numbers};

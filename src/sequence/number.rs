@@ -34,6 +34,25 @@ impl FrameNumber {
         (-Self::LIMIT * MILLION..=Self::LIMIT * MILLION).contains(&millionths).then_some(Self(millionths))
     }
 
+    /// Reads what [`FromStr`] reads, and times with an exponent: `1e-05`.
+    pub(super) fn from_time(text: &str) -> Result<Self, ParseFrameNumberError> {
+        let Some((mantissa, exponent)) = text.split_once(['e', 'E']) else { return text.parse() };
+        let (sign, mantissa) = mantissa.strip_prefix('-').map_or(("", mantissa), |rest| ("-", rest));
+        let (whole, decimals) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+        let exponent: i32 = exponent.parse().map_err(|_| ParseFrameNumberError)?;
+        // More lies beyond every limit.
+        if whole.is_empty() || !(-99..=99).contains(&exponent) {
+            return Err(ParseFrameNumberError);
+        }
+        let zeros = "0".repeat(99);
+        let digits = format!("{zeros}{whole}{decimals}{zeros}");
+        let point = (zeros.len() + whole.len()).saturating_add_signed(exponent as isize);
+        match digits.split_at_checked(point) {
+            Some((whole, decimals)) => format!("{sign}{whole}.{decimals}").parse(),
+            None => Err(ParseFrameNumberError),
+        }
+    }
+
     /// The integer key of the frame: its number in millionths.
     pub fn millionths(self) -> i64 {
         self.0
@@ -132,6 +151,28 @@ mod tests {
     }
 
     #[test]
+    fn times_with_an_exponent_are_exact() {
+        for (text, number) in [
+            ("1e-05", "0.00001"),
+            ("2.5e-05", "0.000025"),
+            ("12.5e-1", "1.25"),
+            ("1.25E+2", "125"),
+            ("1.25e1", "12.5"),
+            ("3e6", "3000000"),
+            ("-1.5e-1", "-0.15"),
+            ("0.05", "0.05"),
+            ("12", "12"),
+        ] {
+            assert_eq!(FrameNumber::from_time(text).map(|n| n.to_string()), Ok(number.to_owned()), "{text}");
+        }
+        for text in
+            ["1e-07", "1e13", "1e", "e5", "1e5.5", "1e999999999999", "1e-100", "é1e2", "1.e-3.5", "-1e-3x"]
+        {
+            assert!(FrameNumber::from_time(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn padding_grows_and_keeps_decimals() {
         assert_eq!(number("7").padded(4), "0007");
         assert_eq!(number("12345").padded(4), "12345");
@@ -142,8 +183,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn parsing_never_panics(text in ".{0,40}") {
+        fn parsing_never_panics(text in ".{0,40}", exponent in "[0-9é.]{0,6}[eE][-+]?[0-9]{0,4}") {
             let _ = text.parse::<FrameNumber>();
+            let _ = FrameNumber::from_time(&text);
+            let _ = FrameNumber::from_time(&exponent);
         }
 
         #[test]

@@ -1,8 +1,9 @@
-//! The place of the frame number in a file name: `####`, `%04d`, `%d`, `$F4` or `$F`.
+//! The place of the frame number in the name of a file or a folder: `####`, `%04d`, `%d`, `$F4` or `$F`.
 
+use super::name::is_time;
 use super::{FrameNumber, SequenceError};
 
-/// A file name with a place for the number.
+/// A name with a place for the number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NamePattern {
     /// What stands before the number.
@@ -14,7 +15,7 @@ pub(super) struct NamePattern {
 }
 
 impl NamePattern {
-    /// Finds the place in a file name (no folders); `None` when there is none.
+    /// Finds the place in one name (no separators); `None` when there is none.
     ///
     /// # Errors
     /// [`SequenceError::Pattern`] when there are two places.
@@ -34,10 +35,7 @@ impl NamePattern {
     /// What stands at the place of the number in `name`, when that looks like a number.
     pub fn number_text<'n>(&self, name: &'n str) -> Option<&'n str> {
         let text = name.strip_prefix(self.prefix.as_str())?.strip_suffix(self.suffix.as_str())?;
-        let digits = text.strip_prefix('-').unwrap_or(text);
-        let (whole, decimals) = digits.split_once('.').unwrap_or((digits, "0"));
-        let all_digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-        (all_digits(whole) && all_digits(decimals)).then_some(text)
+        is_time(text.strip_prefix('-').unwrap_or(text)).then_some(text)
     }
 
     /// The name of one frame.
@@ -142,6 +140,7 @@ mod tests {
             ("run2_12345.ply", Some("12345")),
             ("run2_-3.ply", Some("-3")),
             ("run2_12.5.ply", Some("12.5")),
+            ("run2_1e-05.ply", Some("1e-05")),
             ("run2_.ply", None),
             ("run2_1a.ply", None),
             ("run2_1.ply.gz", None),

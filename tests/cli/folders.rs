@@ -31,6 +31,18 @@ fn a_folder_of_frames_gets_a_scene_once() {
     assert_eq!(folder.ledger("out/drops/ledger.jsonl")[1]["samples"], 16 * 9);
 }
 
+#[test]
+fn a_folder_for_each_time_is_a_sequence() {
+    let folder = Folder::new();
+    let mesh = include_bytes!("../data/meshes/cube_ascii.vtp");
+    folder.write("cut/0.5/surface.vtp", mesh).write("cut/1e-05/surface.vtp", mesh);
+    let ran = floe(&folder, &["info", "cut"]).ended(0);
+    assert!(ran.stdout.contains("0.00001") && ran.stdout.contains("0.5"), "{ran:#?}");
+    folder.write("scene.toml", scene("[frames]\npath = \"cut/*/surface.vtp\"\n"));
+    floe(&folder, &["render", "scene.toml", "--samples", "1", "--output", "out/f_#.exr"]).ended(0);
+    assert_eq!(pictures(&folder), ["out/f_0.00001.exr", "out/f_0.5.exr"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_written_scene_may_be_read_by_others_as_any_new_file() {

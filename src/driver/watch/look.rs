@@ -176,7 +176,7 @@ impl<'a> Watch<'a> {
             }
         };
         let mut look = Look { at, before, after, found: Some(Proof::Proven) };
-        let (bytes, source) = match Inputs::of_frame(&self.job.world, number) {
+        let (bytes, source) = match Inputs::of_frame(&self.job.world, number, std::slice::from_ref(&path)) {
             Err(error) => (bytes, Err(error)),
             Ok(inputs) => {
                 let meshes = vec![(path.clone(), bytes)];
@@ -198,7 +198,13 @@ impl<'a> Watch<'a> {
             }
             return None;
         }
-        let inspected = inspect(&bytes, &path, &self.job.world.velocity_name(), self.loose);
+        let velocity = self.job.world.velocity_name();
+        let mut inspected = inspect(&bytes, &path, &velocity, self.loose);
+        if let (Ok(Inspected { mesh, .. }), Ok(FrameSource { inputs, .. })) = (&mut inspected, &source)
+            && let Err(error) = inputs.add_velocities(mesh, &path, &velocity)
+        {
+            inspected = Err(error);
+        }
         look.found = inspected.as_ref().ok().map(|inspected| inspected.proof);
         let contents = inspected.map(|inspected| (inspected, source));
         Some(Found { look, contents, read_seconds: start.elapsed().as_secs_f64() })

@@ -1,12 +1,11 @@
 //! The text of a `.dsc` file.
 
-use std::str;
-
 use glam::DVec3;
 
 use super::Complex;
 use crate::mesh::Region;
 use crate::mesh::error::{Fault, Place, excerpt};
+use crate::mesh::words::Words;
 
 /// The label of the shell around the domain.
 const SHELL: i32 = 999;
@@ -18,15 +17,8 @@ const MAX_TETRAHEDRA: usize = (u32::MAX / 4) as usize;
 
 /// Reads the vertices and tetrahedra of a file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Complex, Fault> {
-    if bytes.is_empty() {
-        return Err(Fault::malformed(
-            Place::File,
-            "the file is empty",
-            "wait for its writer or write it again",
-        ));
-    }
     let mut complex = Complex::default();
-    let mut words = Words::new(bytes);
+    let mut words = Words::new(bytes, CURE);
     while let Some(word) = words.next() {
         match word {
             b"v" => complex.positions.push(vertex(&mut words)?),
@@ -37,7 +29,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Complex, Fault> {
             }
             _ => {
                 let problem = format!("'{}' where a record begins", excerpt(word));
-                return Err(Fault::malformed(Place::Line(words.line), problem, CURE));
+                return Err(Fault::malformed(words.place(), problem, CURE));
             }
         }
     }
@@ -48,7 +40,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Complex, Fault> {
 
 /// The line on which tetrahedron `index` begins.
 pub(super) fn line_of_tetrahedron(bytes: &[u8], index: usize) -> usize {
-    let mut words = Words::new(bytes);
+    let mut words = Words::new(bytes, CURE);
     let mut left = index;
     while let Some(word) = words.next() {
         if word == b"t" {
@@ -58,57 +50,28 @@ pub(super) fn line_of_tetrahedron(bytes: &[u8], index: usize) -> usize {
             left -= 1;
         }
     }
-    words.line
+    words.line()
 }
 
 fn vertex(words: &mut Words) -> Result<DVec3, Fault> {
-    let mut position = DVec3::ZERO;
-    for axis in 0..3 {
-        let word = words.value("a coordinate")?;
-        let value = str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
-        position[axis] = match value {
-            Some(value) if value.is_finite() => value,
-            Some(_) => {
-                let problem = format!("coordinate '{}' is not finite", excerpt(word));
-                let cure = "the simulation or its writer failed here; coordinates must be finite";
-                return Err(Fault::invalid(Place::Line(words.line), problem, cure));
-            }
-            None => return Err(words.not("a coordinate", word)),
-        };
-    }
-    Ok(position)
+    Ok(DVec3::new(words.coordinate()?, words.coordinate()?, words.coordinate()?))
 }
 
 fn tetrahedron(words: &mut Words) -> Result<([u32; 4], i32), Fault> {
     let mut indices = [0; 4];
     for index in &mut indices {
-        let word = words.value("a vertex index")?;
-        let value = integer(word).ok_or_else(|| words.not("a vertex index", word))?;
+        let value = words.integer("a vertex index")?;
         *index = u32::try_from(value).map_err(|_| {
             let problem = format!("vertex index {value}");
-            Fault::invalid(Place::Line(words.line), problem, "indices count from 0 and have 32 bits")
+            Fault::invalid(words.place(), problem, "indices count from 0 and have 32 bits")
         })?;
     }
-    let word = words.value("a label")?;
-    let value = integer(word).ok_or_else(|| words.not("a label", word))?;
+    let value = words.integer("a label")?;
     let label = i32::try_from(value).map_err(|_| {
         let problem = format!("label {value} does not fit in 32 bits with a sign");
-        Fault::invalid(Place::Line(words.line), problem, "use labels up to 2147483647")
+        Fault::invalid(words.place(), problem, "use labels up to 2147483647")
     })?;
     Ok((indices, if label == SHELL { Region::OUTSIDE.0 } else { label }))
-}
-
-/// A whole number of at most 18 digits.
-fn integer(word: &[u8]) -> Option<i64> {
-    let (digits, sign) = match word {
-        [b'-', digits @ ..] => (digits, -1),
-        [b'+', digits @ ..] => (digits, 1),
-        digits => (digits, 1),
-    };
-    if digits.is_empty() || digits.len() > 18 || !digits.iter().all(u8::is_ascii_digit) {
-        return None;
-    }
-    Some(sign * digits.iter().fold(0, |value, digit| 10 * value + i64::from(digit - b'0')))
 }
 
 fn drop_repeated_last(complex: &mut Complex) {
@@ -144,45 +107,4 @@ fn check_indices(complex: &Complex, bytes: &[u8]) -> Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-/// The words of a text and the line that the last of them stands on.
-struct Words<'a> {
-    rest: &'a [u8],
-    line: usize,
-}
-
-impl<'a> Words<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
-        Self { rest: bytes, line: 1 }
-    }
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let mut start = 0;
-        loop {
-            match self.rest.get(start)? {
-                b'\n' => self.line += 1,
-                byte if byte.is_ascii_whitespace() => {}
-                _ => break,
-            }
-            start += 1;
-        }
-        let word = &self.rest[start..];
-        let length = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
-        let (word, rest) = word.split_at(length);
-        self.rest = rest;
-        Some(word)
-    }
-
-    /// The next word of a record, which must not end the file.
-    fn value(&mut self, expected: &str) -> Result<&'a [u8], Fault> {
-        self.next().ok_or_else(|| {
-            let problem = format!("the file ends where {expected} is expected");
-            Fault::malformed(Place::Line(self.line), problem, "the file is truncated; write it again")
-        })
-    }
-
-    fn not(&self, expected: &str, word: &[u8]) -> Fault {
-        Fault::malformed(Place::Line(self.line), format!("'{}' is not {expected}", excerpt(word)), CURE)
-    }
 }

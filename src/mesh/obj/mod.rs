@@ -24,13 +24,6 @@ const OPTIONS: LoadOptions =
 
 /// Reads an OBJ file.
 pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
-    if bytes.is_empty() {
-        return Err(Fault::malformed(
-            Place::File,
-            "the file is empty",
-            "wait for its writer or write it again",
-        ));
-    }
     let mut screen = Screen::new(bytes);
     let loaded = tobj::load_obj_buf(&mut screen, &OPTIONS, |_| Err(LoadError::GenericFailure))
         .map(|(models, _)| models);

@@ -11,8 +11,8 @@ use ply_rs::ply::{ElementDef, Encoding, PropertyAccess};
 use super::elements::{FaceRecord, SkippedRecord, VertexRecord};
 use super::header::{Header, check_length};
 use crate::mesh::error::{Fault, Place, excerpt};
-use crate::mesh::limits::MAX_TRIANGLES;
-use crate::mesh::{CornerNormals, Interface, RawMesh, Region};
+use crate::mesh::polygons::{add_fan, region};
+use crate::mesh::{CornerNormals, Interface, RawMesh};
 
 /// The longest line of text that is taken for an element.
 const LONGEST_LINE: usize = 1 << 20;
@@ -88,41 +88,6 @@ fn read_faces(
     }
     mesh.interfaces = header.labelled.then_some(interfaces);
     Ok(())
-}
-
-/// Adds a polygon as a fan around its first corner.
-fn add_fan(
-    indices: &[i64],
-    vertices: usize,
-    triangles: &mut Vec<[u32; 3]>,
-    place: impl Fn() -> Place,
-) -> Result<(), Fault> {
-    if indices.len() < 3 {
-        let problem = format!("a face of {} corners", indices.len());
-        return Err(Fault::invalid(
-            place(),
-            problem,
-            "a face needs three corners or more; leave this one out",
-        ));
-    }
-    if let Some(index) = indices.iter().find(|&&index| index < 0 || index as u64 >= vertices as u64) {
-        let problem = format!("vertex index {index}, but there are {vertices} vertices");
-        return Err(Fault::invalid(place(), problem, "indices count from 0; write the file again"));
-    }
-    if triangles.len() + indices.len() > MAX_TRIANGLES {
-        let problem = format!("more than {MAX_TRIANGLES} triangles");
-        return Err(Fault::too_large(place(), problem, "split the mesh into several files"));
-    }
-    let corner = |k: usize| indices[k] as u32;
-    triangles.extend((2..indices.len()).map(|k| [corner(0), corner(k - 1), corner(k)]));
-    Ok(())
-}
-
-fn region(label: i64, place: impl Fn() -> Place) -> Result<Region, Fault> {
-    i32::try_from(label).map(Region).map_err(|_| {
-        let problem = format!("label {label} does not fit in 32 bits with a sign");
-        Fault::invalid(place(), problem, "use labels up to 2147483647")
-    })
 }
 
 /// The records that follow, in whatever encoding.

@@ -81,13 +81,6 @@ fn rename_velocities(declared: &mut ply::Header, velocity: &VelocityName) -> boo
 /// The bytes up to and including the line `end_header`.
 fn length(bytes: &[u8]) -> Result<usize, Fault> {
     const END: &[u8] = b"end_header";
-    if bytes.is_empty() {
-        return Err(Fault::malformed(
-            Place::File,
-            "the file is empty",
-            "wait for its writer or write it again",
-        ));
-    }
     let mut at = 0;
     for line in bytes[..bytes.len().min(LONGEST)].split_inclusive(|&b| b == b'\n') {
         let content = line.trim_ascii_end();
