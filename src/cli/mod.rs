@@ -1,10 +1,12 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
+mod encode;
 mod exit;
 mod info;
 mod progress;
 mod render;
 mod streams;
+mod study;
 mod summary;
 
 use std::io::ErrorKind;
@@ -28,6 +30,10 @@ enum Command {
     Render(render::RenderArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
+    /// Make a movie, or a sheet of small pictures, of what was rendered
+    Encode(encode::EncodeArguments),
+    /// Render frames in several ways and measure how they differ
+    Study(study::StudyArguments),
 }
 
 /// Runs the command that the process was started with.
@@ -41,6 +47,8 @@ fn dispatch() -> Exit {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
+            Command::Encode(arguments) => encode::run(&arguments),
+            Command::Study(arguments) => study::run(&arguments),
         },
         Err(error) => {
             // Help and version go to standard output and are no failure.

@@ -8,7 +8,7 @@ use super::exit::Exit;
 use super::progress::Progress;
 use super::streams::{print, say};
 use super::summary::summary;
-use crate::driver::{Job, RenderError, RenderOptions, check_pictures, render};
+use crate::driver::{Job, RenderError, RenderOptions, check_pictures, preview, render};
 use crate::sequence::{FrameSelection, SequenceError};
 
 #[derive(Debug, Args)]
@@ -31,6 +31,12 @@ pub struct RenderArguments {
     /// Threads that render; one more makes the next frame ready [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
+    #[arg(long)]
+    preview: bool,
+    /// Write pictures without noise too, as frame_0001.denoised.exr beside each (also output.denoise of the scene)
+    #[arg(long)]
+    denoise: bool,
     /// Go on with the other frames when one fails; the exit code still tells
     #[arg(long)]
     keep_going: bool,
@@ -43,14 +49,19 @@ pub struct RenderArguments {
 pub fn run(arguments: &RenderArguments) -> Exit {
     let options = RenderOptions {
         frames: arguments.frames.clone(),
-        output: arguments.output.clone(),
+        output: match (&arguments.output, arguments.preview) {
+            (Some(pattern), true) => Some(preview::place(pattern)),
+            (pattern, _) => pattern.clone(),
+        },
         samples: arguments.samples,
         seed: arguments.seed,
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
+        denoise: arguments.denoise,
     };
     let progress = Progress::new(arguments.quiet);
-    let report = Job::open(&arguments.scene).and_then(|job| {
+    let open = if arguments.preview { preview::open } else { Job::open };
+    let report = open(&arguments.scene).and_then(|job| {
         if let Some(scene) = &job.written_scene {
             say(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }

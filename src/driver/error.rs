@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::film::FilmError;
+use crate::film::{DenoiseError, FilmError};
 use crate::scene::FrameError;
 use crate::scene::description::SceneError;
 use crate::scene::domain::DomainError;
-use crate::sequence::SequenceError;
+use crate::sequence::{FrameNumber, SequenceError};
 
 /// What went wrong, for a frame or for the whole job.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +23,9 @@ pub enum RenderError {
     /// The picture could not be written.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The picture could not be denoised.
+    #[error(transparent)]
+    Denoise(#[from] DenoiseError),
     /// A scene file is text, and the name of the folder is not.
     #[error("{}: the name of this folder is not UTF-8, so no scene file can be written for it; rename it", path.display())]
     NotUtf8 {
@@ -87,6 +90,15 @@ pub enum RenderError {
         /// Of how many.
         rays: u64,
     },
+    /// Frames follow each other in one sequence of random numbers, and this one has no place there.
+    #[error(
+        "frame {number}: seed_mode = \"sequence\" takes frames with whole numbers only; \
+         write seed_mode = \"frame\" into [render] of the scene file"
+    )]
+    DecimalFrame {
+        /// Its number.
+        number: FrameNumber,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -121,7 +133,9 @@ impl RenderError {
             Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } => Blame::Missing,
             Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
-            Self::NotExr { .. } | Self::OtherFolder { .. } => Blame::Configuration,
+            Self::NotExr { .. } | Self::OtherFolder { .. } | Self::DecimalFrame { .. } => {
+                Blame::Configuration
+            }
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(FrameError::NoMedium { .. }) => Blame::Configuration,
             Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),
@@ -129,7 +143,7 @@ impl RenderError {
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
-            Self::Threads { .. } => Blame::Internal,
+            Self::Threads { .. } | Self::Denoise(_) => Blame::Internal,
         }
     }
 }

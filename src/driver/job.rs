@@ -46,8 +46,20 @@ impl Job {
     /// # Errors
     /// When nothing is there, or the scene file is wrong, or no frames are found.
     pub fn open(path: &Path) -> Result<Self, RenderError> {
+        Self::open_changed(path, |_| ())
+    }
+
+    /// Opens a scene file or a folder, and changes what the scene file says.
+    ///
+    /// # Errors
+    /// Those of [`Job::open`].
+    pub fn open_changed(
+        path: &Path,
+        change: impl FnOnce(&mut SceneDescription),
+    ) -> Result<Self, RenderError> {
         let (file, written_scene, name) = scene_file(path)?;
-        let description = SceneDescription::from_file(&file)?;
+        let mut description = SceneDescription::from_file(&file)?;
+        change(&mut description);
         let files = match &description.frames {
             Some(frames) => discover(&description.directory, &frames.path)?,
             None => Vec::new(),

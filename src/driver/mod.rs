@@ -6,8 +6,10 @@
 
 mod ahead;
 pub mod error;
+pub mod frame_seeds;
 pub mod job;
 pub mod ledger;
+pub mod preview;
 pub mod render;
 mod session;
 pub mod tiles;

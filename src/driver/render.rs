@@ -27,6 +27,8 @@ pub struct RenderOptions {
     pub threads: Option<usize>,
     /// Renders the other frames after a bad one.
     pub keep_going: bool,
+    /// Writes denoised pictures too, even if the scene does not ask for them.
+    pub denoise: bool,
 }
 
 /// Hears of what happens while frames are rendered.

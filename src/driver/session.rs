@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 
 use super::ahead::{Preparation, timed};
 use super::error::RenderError;
+use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::ledger::{FrameRecord, Ledger, Status};
 use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Sampling, render_pixels};
 use crate::accel::Hierarchy;
-use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::film::{DEFAULT_CONFIDENCE, Denoiser, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::scene::assembly::Assembled;
-use crate::scene::description::RenderDescription;
+use crate::scene::description::{Aov, RenderDescription};
 use crate::sequence::{FrameNumber, output_path};
 use crate::spectrum::LaneMode;
 
@@ -21,6 +22,8 @@ pub(super) struct Session<'a> {
     pattern: String,
     settings: RenderDescription,
     sampling: Sampling,
+    seeds: FrameSeeds,
+    denoiser: Option<Denoiser>,
     ledger: Ledger,
     pub report: RenderReport,
     observer: &'a dyn Observer,
@@ -35,6 +38,8 @@ impl<'a> Session<'a> {
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
         let settings = effective(&job.world.description.render, options);
+        let denoise = options.denoise || job.world.description.output.denoise;
+        let denoiser = denoise.then(Denoiser::load).transpose()?;
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
         let report = RenderReport {
@@ -46,7 +51,21 @@ impl<'a> Session<'a> {
             ledger: ledger.path().into(),
         };
         let sampling = Sampling::new(&settings);
-        Ok(Self { job, pattern: pattern.into(), settings, sampling, ledger, report, observer })
+        let seeds = FrameSeeds::new(&job.world.description.render, settings.seed, settings.samples);
+        if let Some(text) = seeds.overlap().filter(|_| job.files.len() > 1) {
+            observer.warning(&text);
+        }
+        Ok(Self {
+            job,
+            pattern: pattern.into(),
+            settings,
+            sampling,
+            seeds,
+            denoiser,
+            ledger,
+            report,
+            observer,
+        })
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -104,7 +123,7 @@ impl<'a> Session<'a> {
         for warning in &record.warnings {
             self.observer.warning(warning);
         }
-        self.sampling.seed.frame = task.number.millionths();
+        self.sampling.seed = self.seeds.of_frame(task.number)?;
         let observer = self.observer;
         let (image, counters) = timed(&mut record.render_seconds, || {
             render_pixels(&assembled.frame, &self.sampling, &|done, of| observer.tiles(done, of))
@@ -128,10 +147,26 @@ impl<'a> Session<'a> {
             record.warnings.push(text);
         }
         let output = record.output.clone();
-        timed(&mut record.write_seconds, || self.write(&image, task.number, &output))
+        timed(&mut record.write_seconds, || {
+            // A denoiser that fails does not cost the picture.
+            let denoised = self.denoise(&image, task.number, &output);
+            self.write(&image, task.number, &output, false).and(denoised)
+        })
     }
 
-    fn write(&self, image: &FrameImage, number: FrameNumber, path: &Path) -> Result<(), RenderError> {
+    /// Writes the picture without its noise, `frame_0001.denoised.exr` beside `frame_0001.exr`, if that is asked for.
+    fn denoise(&self, image: &FrameImage, number: FrameNumber, path: &Path) -> Result<(), RenderError> {
+        let Some(denoiser) = &self.denoiser else { return Ok(()) };
+        self.write(&denoiser.denoised(image)?, number, &path.with_extension("denoised.exr"), true)
+    }
+
+    fn write(
+        &self,
+        image: &FrameImage,
+        number: FrameNumber,
+        path: &Path,
+        denoised: bool,
+    ) -> Result<(), RenderError> {
         let world = &self.job.world;
         let output = &world.description.output;
         let metadata = ImageMetadata {
@@ -139,10 +174,16 @@ impl<'a> Session<'a> {
             fps: world.frames().map_or(24.0, |f| f.fps),
             world_to_camera: world.camera.world_to_camera(world.origin),
             world_to_ndc: world.camera.world_to_ndc(world.origin),
-            attributes: self.attributes(number),
+            attributes: self
+                .attributes(number)
+                .into_iter()
+                .chain(denoised.then(|| ("floe:denoised".into(), "Open Image Denoise".into())))
+                .collect(),
         };
+        // The other layers are those of the picture with its noise.
+        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
         let png = output.png.then(|| path.with_extension("png"));
-        Ok(write_frame(image, &metadata, path, png.as_deref(), &output.aovs, output.exposure)?)
+        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
     }
 
     /// The settings that made the picture.
@@ -158,6 +199,7 @@ impl<'a> Session<'a> {
             ("lanes", lanes.into()),
             ("samples", s.samples.to_string()),
             ("seed", s.seed.to_string()),
+            ("seedMode", self.seeds.mode(number).name().into()),
             ("maxDepth", s.max_depth.to_string()),
             ("split", s.split.to_string()),
             ("similarity", s.similarity.to_string()),

@@ -48,6 +48,15 @@ pub fn discover(base: &Path, pattern: &str) -> Result<Vec<FrameFile>, SequenceEr
     }
 }
 
+/// Finds the numbered pictures of a folder, of one extension, in ascending order.
+///
+/// # Errors
+/// Those of [`discover`].
+pub fn discover_pictures(folder: &Path, extension: &str) -> Result<Vec<FrameFile>, SequenceError> {
+    let is_picture = |name: &str| split_extension(name).1.eq_ignore_ascii_case(extension);
+    numbered(folder, is_picture, format!("pictures (.{extension})"))
+}
+
 /// `base` itself when the rest is empty: joining would add a separator.
 fn join(base: &Path, rest: &str) -> PathBuf {
     if rest.is_empty() { base.to_owned() } else { base.join(rest) }
@@ -89,14 +98,22 @@ fn single_file(path: PathBuf, name: &str) -> Result<Vec<FrameFile>, SequenceErro
     Ok(vec![FrameFile { number, path }])
 }
 
-/// The meshes of a folder whose names are wanted; the numbers are found in the names.
+/// The meshes of a folder whose names are wanted.
 fn in_folder(
     folder: &Path,
     wanted: impl Fn(&str) -> bool,
     wanted_words: String,
 ) -> Result<Vec<FrameFile>, SequenceError> {
-    let files: Vec<(String, PathBuf)> =
-        list(folder)?.into_iter().filter(|(name, _)| is_mesh(name) && wanted(name)).collect();
+    numbered(folder, |name| is_mesh(name) && wanted(name), wanted_words)
+}
+
+/// The files of a folder whose names are wanted; the numbers are found in the names.
+fn numbered(
+    folder: &Path,
+    wanted: impl Fn(&str) -> bool,
+    wanted_words: String,
+) -> Result<Vec<FrameFile>, SequenceError> {
+    let files: Vec<(String, PathBuf)> = list(folder)?.into_iter().filter(|(name, _)| wanted(name)).collect();
     let mut frames = Vec::new();
     let mut sequence: Option<(Name<'_>, &str)> = None;
     for (file, path) in &files {

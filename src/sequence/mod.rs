@@ -20,7 +20,7 @@ mod selection;
 use std::path::PathBuf;
 
 pub use error::SequenceError;
-pub use frames::discover;
+pub use frames::{discover, discover_pictures};
 pub use gaps::{Gap, gaps};
 pub use number::FrameNumber;
 pub use output::{check_output_pattern, frame_path, has_place, output_path};

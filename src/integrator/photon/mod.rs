@@ -173,7 +173,11 @@ impl PhotonFrame {
     ) -> (Wavelengths, impl Fn(u32) -> SampleStream + Sync + use<>) {
         let seed = self.seed;
         let u = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4()[0];
-        (Wavelengths::for_mode(frame.mode, u), move |photon| SampleStream::of_photon(seed, pass, photon))
+        let kinds = self.emission.as_ref().map_or(1, Emission::kinds);
+        let of_kind = self.count.div_ceil(kinds);
+        let stream =
+            move |photon| SampleStream::of_photon(seed, pass, photon % kinds, of_kind, photon / kinds);
+        (Wavelengths::for_mode(frame.mode, u), stream)
     }
 
     fn trace(
