@@ -11,6 +11,7 @@
 //!                   order)      label,   refit,   Fresnel, sun,    frame,    along a      error, EXR,
 //!                               check)   trace)   sky)             needs)    path)        PNG)
 //!                            driver owns the loop: frames, threads, tiles, ledger
+//!                            movie shows what was rendered; study renders in several ways and compares
 //! ```
 //! Each stage uses itself and the stages before it, never one after. [`geometry`], [`sampling`] and [`spectrum`]
 //! are foundations under all.
@@ -54,6 +55,10 @@ pub mod integrator;
 pub mod film;
 
 pub mod driver;
+
+pub mod movie;
+
+pub mod study;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage uses itself and those before it.
-const STAGES: [&str; 13] = [
+const STAGES: [&str; 15] = [
     "geometry",
     "sampling",
     "spectrum",
@@ -20,6 +20,8 @@ const STAGES: [&str; 13] = [
     "integrator",
     "film",
     "driver",
+    "movie",
+    "study",
     "cli",
 ];
 

@@ -92,6 +92,46 @@ fn photons_change_no_byte_either() {
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
+/// Frames 0 to 2 of a mesh that stands still, under a `render.seed_mode`.
+fn still(mode: &str) -> Pictures {
+    let text = shipped_scene(4).replace("[render]\n", &format!("[render]\nseed_mode = \"{mode}\"\n"));
+    let folder = Folder::with_scene(&text);
+    let mesh = read(&shipped_frame(0)).unwrap();
+    for number in 0..3 {
+        folder.frame(number, &mesh);
+    }
+    let (sequence, _) = pictures(&folder, "0-2", 2);
+    let (last, _) = pictures(&folder, "2", 1);
+    assert_eq!(last["out/frame_0002.exr"], sequence["out/frame_0002.exr"], "{mode}: alone");
+    sequence
+}
+
+#[test]
+fn a_scene_that_stands_still_flickers_only_where_its_seeds_say_so() {
+    let differ = |pictures: &Pictures| {
+        let png: std::collections::BTreeSet<_> =
+            pictures.iter().filter(|(name, _)| name.ends_with(".png")).map(|(_, bytes)| bytes).collect();
+        png.len()
+    };
+    let [still, frame, sequence] = ["static", "frame", "sequence"].map(still);
+    assert_eq!([&still, &frame, &sequence].map(differ), [1, 3, 3]);
+    assert_eq!(sequence["out/frame_0000.png"], still["out/frame_0000.png"], "turn 0 begins where all begin");
+    assert_ne!(sequence["out/frame_0001.png"], frame["out/frame_0001.png"]);
+}
+
+#[test]
+fn a_decimal_frame_has_no_place_in_a_sequence_that_is_asked_for() {
+    for (key, refused) in [("", false), ("seed_mode = \"sequence\"\n", true)] {
+        let folder = Folder::with_scene(&shipped_scene(1).replace("[render]\n", &format!("[render]\n{key}")));
+        let bytes = std::fs::read(shipped_frame(0)).unwrap();
+        folder.write("frames/frame_0000.ply", &bytes).write("frames/frame_0000.5.ply", &bytes);
+        let report = folder.render(RenderOptions { keep_going: true, ..RenderOptions::default() });
+        let failures: Vec<String> = report.failures.iter().map(|(_, error)| error.to_string()).collect();
+        assert_eq!(failures.len(), usize::from(refused), "{failures:?}");
+        assert!(failures.iter().all(|text| text.contains("frame 0.5: ") && text.contains("seed_mode")));
+    }
+}
+
 #[test]
 fn a_frame_after_a_bad_one_is_the_same() {
     let folder = wobbling();

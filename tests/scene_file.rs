@@ -52,8 +52,11 @@ fn an_empty_file_has_every_default() {
     let render = scene.render;
     assert_eq!((render.integrator, render.filter), (IntegratorKind::Auto, FilterKind::Box));
     assert_eq!((render.samples, render.max_depth, render.split, render.seed), (64, 0, 1, 0));
-    assert_eq!(render.similarity, 0);
-    assert_eq!(scene.output, OutputDescription { path: None, png: true, exposure: 0.0, aovs: vec![] });
+    assert_eq!((render.similarity, render.seed_mode), (0, None));
+    assert_eq!(
+        scene.output,
+        OutputDescription { path: None, png: true, exposure: 0.0, denoise: false, aovs: vec![] }
+    );
     assert_eq!(SceneDescription::parse("", Path::new("s.toml")).unwrap().directory, Path::new("."));
 }
 
@@ -70,7 +73,7 @@ fn a_whole_scene_is_read_as_written() {
     let absorption = AbsorptionDescription::Spectrum(Spectrum::Rgb([0.35, 0.07, 0.03]));
     assert_eq!((&sea.ior, &sea.absorption), (&RefractiveIndex::Constant(1.33), &Some(absorption)));
     assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
-    assert_eq!(scene.render.similarity, 2);
+    assert_eq!((scene.render.similarity, scene.render.seed_mode), (2, Some(SeedMode::Sequence)));
     let sun = scene.sun.unwrap();
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
@@ -80,6 +83,7 @@ fn a_whole_scene_is_read_as_written() {
         (0.5, 0.02, Some(3.5))
     );
     assert_eq!(scene.camera.turntable, Some(TurntableDescription { degrees_per_frame: 3.0, frame: 0.0 }));
+    assert!(scene.output.denoise);
     assert_eq!(
         scene.output.aovs,
         [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Motion, Aov::Variance]
@@ -282,6 +286,9 @@ const WRONG_TYPES: &[Wrong] = &[
     ("[camera]\nresolution = [640, 360, 1]", 2, 14, "write width and height in pixels"),
     ("[render]\nsamples = 64.0", 2, 11, "render.samples: 64.0: write a whole number from 1 to 4294967295"),
     ("[render]\nintegrator = 'bidirectional'", 2, 14, "write one of `auto`, `path`, `photon`, `single-scattering`, `fog` and `ambient-occlusion`"),
+    ("[render]\nseed_mode = 'frames'", 2, 13, "did you mean `frame`?"),
+    ("[output]\ndenoise = 'yes'", 2, 11, "output.denoise: 'yes': write true or false"),
+    ("[render]\nseed_mode = 1", 2, 13, "write one of `frame`, `sequence` and `static` in quotes"),
     ("[render]\nphotons = 1000", 2, 11, "write a table such as { count = 100000, final_gather = true }"),
     ("[render]\nphotons = { number = 1 }", 2, 13, "unknown key `number`"),
     ("[render]\nfilter = 1979-05-27", 2, 10, "write one of `box`, `gaussian` and `blackman-harris` in quotes"),

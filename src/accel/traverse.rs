@@ -225,7 +225,7 @@ mod tests {
 
     /// A folded sheet with vertices at random places, and rays from and to everywhere.
     fn crumpled() -> (Vec<Vec3>, Vec<[u32; 3]>) {
-        let number = |i: u32| SampleStream::new(SampleSeed { seed: 5, frame: 0 }, i, 0, 0).next4();
+        let number = |i: u32| SampleStream::new(SampleSeed::new(5), i, 0, 0).next4();
         let at = |i: u32| {
             let u = number(i);
             Vec3::new((i % 41) as f32 + u[0], (i / 41) as f32 + u[1], 6.0 * u[2])
@@ -237,7 +237,7 @@ mod tests {
 
     fn rays() -> impl Iterator<Item = Ray> {
         (0..20_000).map(|i| {
-            let mut stream = SampleStream::new(SampleSeed { seed: 6, frame: 0 }, i, 0, 0);
+            let mut stream = SampleStream::new(SampleSeed::new(6), i, 0, 0);
             let (u, v) = (stream.next4(), stream.next4());
             let mut direction = warp::sphere([u[0], u[1]]);
             if i % 8 == 0 {

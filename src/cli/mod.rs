@@ -1,6 +1,7 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
 mod duration;
+mod encode;
 mod exit;
 mod info;
 mod progress;
@@ -12,6 +13,7 @@ mod settings;
 mod signals;
 mod status;
 mod streams;
+mod study;
 mod summary;
 mod watch;
 mod watching;
@@ -41,6 +43,10 @@ enum Command {
     Status(status::StatusArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
+    /// Make a movie, or a sheet of small pictures, of what was rendered
+    Encode(encode::EncodeArguments),
+    /// Render frames in several ways and measure how they differ
+    Study(study::StudyArguments),
 }
 
 /// Runs the command that the process was started with.
@@ -56,6 +62,8 @@ fn dispatch() -> Exit {
             Command::Watch(arguments) => watch::run(&arguments),
             Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
+            Command::Encode(arguments) => encode::run(&arguments),
+            Command::Study(arguments) => study::run(&arguments),
         },
         Err(error) => {
             // Help and version go to standard output and are no failure.

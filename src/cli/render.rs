@@ -10,7 +10,7 @@ use super::progress::Progress;
 use super::settings::Settings;
 use super::streams::{print, say};
 use super::summary::summary;
-use crate::driver::{Job, RenderError, RenderOptions, render};
+use crate::driver::{Job, RenderError, RenderOptions, preview, render};
 use crate::sequence::SequenceError;
 
 #[derive(Debug, Args)]
@@ -20,6 +20,12 @@ pub struct RenderArguments {
     /// Threads that render; one more makes the next frame ready [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
+    #[arg(long)]
+    preview: bool,
+    /// Write pictures without noise too, as frame_0001.denoised.exr beside each (also output.denoise of the scene)
+    #[arg(long)]
+    denoise: bool,
     /// Leave frames alone whose pictures are there and up to date, and go on with the one that was interrupted
     #[arg(long)]
     resume: bool,
@@ -36,17 +42,24 @@ pub struct RenderArguments {
 
 /// Renders and says what became of it.
 pub fn run(arguments: &RenderArguments) -> Exit {
+    let settings = arguments.settings.options();
     let options = RenderOptions {
+        output: match (settings.output, arguments.preview) {
+            (Some(pattern), true) => Some(preview::place(&pattern)),
+            (pattern, _) => pattern,
+        },
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
+        denoise: arguments.denoise,
         resume: arguments.resume,
         checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
-        ..arguments.settings.options()
+        ..settings
     };
     #[cfg(unix)]
     super::signals::obey(&options.interrupt);
     let progress = Progress::new(arguments.quiet);
-    let report = Job::open(&arguments.settings.scene).and_then(|job| {
+    let open = if arguments.preview { preview::open } else { Job::open };
+    let report = open(&arguments.settings.scene).and_then(|job| {
         if let Some(scene) = &job.written_scene {
             say(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::film::FilmError;
+use crate::film::{DenoiseError, FilmError};
 use crate::scene::FrameError;
 use crate::scene::description::SceneError;
 use crate::scene::domain::DomainError;
@@ -23,6 +23,9 @@ pub enum RenderError {
     /// The picture could not be written.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The picture could not be denoised.
+    #[error(transparent)]
+    Denoise(#[from] DenoiseError),
     /// A scene file is text, and the name of the folder is not.
     #[error("{}: the name of this folder is not UTF-8, so no scene file can be written for it; rename it", path.display())]
     NotUtf8 {
@@ -118,6 +121,15 @@ pub enum RenderError {
     /// The run was asked to stop.
     #[error("interrupted; what is done is kept, and the same command with --resume goes on")]
     Interrupted,
+    /// Frames follow each other in one sequence of random numbers, and this one has no place there.
+    #[error(
+        "frame {number}: seed_mode = \"sequence\" takes frames with whole numbers only; \
+         write seed_mode = \"frame\" into [render] of the scene file"
+    )]
+    DecimalFrame {
+        /// Its number.
+        number: FrameNumber,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -159,7 +171,8 @@ impl RenderError {
             Self::NotExr { .. }
             | Self::OtherFolder { .. }
             | Self::NothingToWatch { .. }
-            | Self::SeveralMeshes { .. } => Blame::Configuration,
+            | Self::SeveralMeshes { .. }
+            | Self::DecimalFrame { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(
                 FrameError::NoMedium { .. }
@@ -172,7 +185,7 @@ impl RenderError {
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
-            Self::Threads { .. } => Blame::Internal,
+            Self::Threads { .. } | Self::Denoise(_) => Blame::Internal,
             Self::Interrupted => Blame::Interrupted,
         }
     }

@@ -85,8 +85,9 @@ fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String
     let OutputDescription { mut aovs, .. } = counts.output;
     aovs.sort_unstable();
     aovs.dedup();
-    counts.output = OutputDescription { path: None, png: false, exposure: 0.0, aovs };
-    format!("{counts:?}")
+    counts.output = OutputDescription { path: None, png: false, exposure: 0.0, denoise: false, aovs };
+    // Where in the sequence of samples a frame begins follows from what the scene says of samples.
+    format!("{counts:?} {}", scene.render.samples)
 }
 
 fn hexadecimal(bytes: &[u8]) -> String {

@@ -92,11 +92,22 @@ impl Job {
     /// # Errors
     /// When nothing is there, or the scene file is wrong, or no frames are found.
     pub fn open(path: &Path) -> Result<Self, RenderError> {
+        Self::open_changed(path, |_| ())
+    }
+
+    /// Opens a scene file or a folder, and changes what the scene file says.
+    ///
+    /// # Errors
+    /// Those of [`Job::open`].
+    pub fn open_changed(
+        path: &Path,
+        change: impl FnOnce(&mut SceneDescription),
+    ) -> Result<Self, RenderError> {
         let first = |base: &Path, pattern: &str| {
             let files = discover(base, pattern)?;
             Ok(mesh::read(&files[0].path).map_err(FrameError::from)?)
         };
-        let mut job = Self::open_on(path, &first)?;
+        let mut job = Self::open_with(path, &first, change)?;
         let description = &job.world.description;
         job.meshes = MeshSequence::of(description)?;
         job.files = match &description.frames {
@@ -114,6 +125,14 @@ impl Job {
     /// # Errors
     /// When nothing is there, or the scene file is wrong, and those of `first`.
     pub fn open_on(path: &Path, first: &FirstMesh<'_>) -> Result<Self, RenderError> {
+        Self::open_with(path, first, |_| ())
+    }
+
+    fn open_with(
+        path: &Path,
+        first: &FirstMesh<'_>,
+        change: impl FnOnce(&mut SceneDescription),
+    ) -> Result<Self, RenderError> {
         let (file, is_new, name) = match find_scene(path)? {
             SceneFile::There { file, name } => (file, false, name),
             SceneFile::ToBeWritten { file, name } => {
@@ -121,7 +140,8 @@ impl Job {
                 (file, true, name)
             }
         };
-        let description = SceneDescription::from_file(&file)?;
+        let mut description = SceneDescription::from_file(&file)?;
+        change(&mut description);
         let placement = match &description.camera.placement {
             Some(placement) => *placement,
             None => framed(&description, first)?,

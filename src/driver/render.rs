@@ -32,6 +32,8 @@ pub struct RenderOptions {
     pub threads: Option<usize>,
     /// Renders the other frames after a bad one.
     pub keep_going: bool,
+    /// Writes denoised pictures too, even if the scene does not ask for them.
+    pub denoise: bool,
     /// Leaves frames alone whose pictures are there, and goes on from checkpoints.
     pub resume: bool,
     /// How often the frame that is being rendered is saved; only when it is asked for without it.

@@ -7,6 +7,7 @@ use super::ahead::{Preparation, Ready, timed};
 use super::checkpoint::Checkpoint;
 use super::error::RenderError;
 use super::fingerprint::Identity;
+use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::keeper::Keeper;
 use super::ledger::{FrameRecord, Ledger, Status};
@@ -15,11 +16,11 @@ use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
 use crate::film::write::remove_abandoned;
-use crate::film::{DEFAULT_CONFIDENCE, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::film::{DEFAULT_CONFIDENCE, Denoiser, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::integrator::Counters;
 use crate::scene::assembly::Assembled;
 use crate::scene::camera::Camera;
-use crate::scene::description::RenderDescription;
+use crate::scene::description::{Aov, RenderDescription};
 use crate::scene::frame::Frame;
 use crate::sequence::FrameNumber;
 use crate::spectrum::LaneMode;
@@ -31,6 +32,8 @@ pub(super) struct Session<'a> {
     pattern: String,
     settings: RenderDescription,
     sampling: Sampling,
+    seeds: FrameSeeds,
+    denoiser: Option<Denoiser>,
     ledger: Ledger,
     pub report: RenderReport,
     observer: &'a dyn Observer,
@@ -45,6 +48,8 @@ impl<'a> Session<'a> {
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
         let settings = options.settings(&job.world.description.render);
+        let denoise = options.denoise || job.world.description.output.denoise;
+        let denoiser = denoise.then(Denoiser::load).transpose()?;
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
         remove_abandoned(&first_picture);
@@ -59,7 +64,22 @@ impl<'a> Session<'a> {
             ledger: ledger.path().into(),
         };
         let sampling = Sampling::new(&settings);
-        Ok(Self { job, options, pattern: pattern.into(), settings, sampling, ledger, report, observer })
+        let seeds = FrameSeeds::new(&job.world.description.render, settings.seed, settings.samples);
+        if let Some(text) = seeds.overlap().filter(|_| job.files.len() > 1) {
+            observer.warning(&text);
+        }
+        Ok(Self {
+            job,
+            options,
+            pattern: pattern.into(),
+            settings,
+            sampling,
+            seeds,
+            denoiser,
+            ledger,
+            report,
+            observer,
+        })
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -106,7 +126,7 @@ impl<'a> Session<'a> {
             }
             let image = traced?;
             let camera = &ready.assembled.frame.views.opening;
-            let write = || self.write(&image, camera, task.number, &ready.identity, &output);
+            let write = || self.write_all(&image, camera, (task.number, &ready.identity), &output);
             timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
             checkpoint.remove();
             Ok(image)
@@ -165,7 +185,7 @@ impl<'a> Session<'a> {
         for warning in &record.warnings {
             self.observer.warning(warning);
         }
-        self.sampling.seed.frame = task.number.millionths();
+        self.sampling.seed = self.seeds.of_frame(task.number)?;
         let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
         let (image, counters) = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
@@ -209,13 +229,29 @@ impl<'a> Session<'a> {
         None
     }
 
+    /// Writes the picture and, if that is asked for, `frame_0001.denoised.exr` beside `frame_0001.exr`.
+    fn write_all(
+        &self,
+        image: &FrameImage,
+        camera: &Camera,
+        (number, identity): (FrameNumber, &Identity),
+        path: &Path,
+    ) -> Result<(), RenderError> {
+        // A denoiser that fails does not cost the picture.
+        let denoised = self.denoiser.as_ref().map_or(Ok(()), |denoiser| {
+            let path = path.with_extension("denoised.exr");
+            self.write(&denoiser.denoised(image)?, camera, (number, identity), &path, true)
+        });
+        self.write(image, camera, (number, identity), path, false).and(denoised)
+    }
+
     fn write(
         &self,
         image: &FrameImage,
         camera: &Camera,
-        number: FrameNumber,
-        identity: &Identity,
+        (number, identity): (FrameNumber, &Identity),
         path: &Path,
+        denoised: bool,
     ) -> Result<(), RenderError> {
         let world = &self.job.world;
         let output = &world.description.output;
@@ -224,16 +260,16 @@ impl<'a> Session<'a> {
             fps: world.frames().map_or(24.0, |f| f.fps),
             world_to_camera: camera.world_to_camera(world.origin),
             world_to_ndc: camera.world_to_ndc(world.origin),
-            attributes: self.attributes(number, identity),
+            attributes: self
+                .attributes(number, identity)
+                .into_iter()
+                .chain(denoised.then(|| ("floe:denoised".into(), "Open Image Denoise".into())))
+                .collect(),
         };
-        Ok(write_frame(
-            image,
-            &metadata,
-            path,
-            png_path(&self.job.world.description, path).as_deref(),
-            &output.aovs,
-            output.exposure,
-        )?)
+        // The other layers are those of the picture with its noise.
+        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
+        let png = png_path(&world.description, path);
+        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
     }
 
     /// The settings that made the picture.
@@ -249,6 +285,7 @@ impl<'a> Session<'a> {
             ("lanes", lanes.into()),
             ("samples", s.samples.to_string()),
             ("seed", s.seed.to_string()),
+            ("seedMode", self.seeds.mode(number).name().into()),
             ("maxDepth", s.max_depth.to_string()),
             ("split", s.split.to_string()),
             ("similarity", s.similarity.to_string()),

@@ -37,7 +37,7 @@ impl Sampling {
             integrator: Integrator::new(settings),
             filter: Filter::new(settings.filter),
             samples: settings.samples,
-            seed: SampleSeed { seed: settings.seed, frame: 0 },
+            seed: SampleSeed::new(settings.seed),
         }
     }
 }

@@ -10,6 +10,7 @@
 //! * [`accumulate`] takes means in double precision and the variance of each mean from independent replicates.
 //! * [`frame_image`] cuts a frame into tiles and puts it together again; the order of the tiles has no influence.
 //! * [`estimate`] says how far a frame is from the converged picture, with a confidence interval.
+//! * [`denoise`](mod@denoise) takes the noise out of a copy, if that is asked for.
 //! * [`exr`] and [`png`] encode; [`tonemap`] says how radiance becomes what a screen shows.
 //! * [`exr_seal`] tells whether a file is whole.
 //! * [`write`](mod@write) makes files appear whole or not at all.
@@ -18,6 +19,7 @@
 //! RGB, and components may be negative: water is more saturated than a screen.
 
 pub mod accumulate;
+pub mod denoise;
 pub mod error;
 pub mod estimate;
 pub mod exr;
@@ -36,6 +38,7 @@ pub mod write;
 mod write_frame;
 
 pub use accumulate::{FAR_DEPTH, FilmSample, Pixel, PixelAccumulator, REPLICATES};
+pub use denoise::{DenoiseError, Denoiser};
 pub use error::FilmError;
 pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, estimate_error};
 pub use filter::Filter;

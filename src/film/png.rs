@@ -23,7 +23,7 @@ use super::tonemap::ToneMap;
 /// # Errors
 /// The encoder's, when the frame has no pixels or is too large for the format.
 pub fn encode_png(image: &FrameImage, exposure: f32) -> Result<Vec<u8>, image::ImageError> {
-    let levels = display_levels(image, ToneMap::new(exposure));
+    let levels = display_levels(image, exposure);
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive).write_image(
         &levels,
@@ -34,8 +34,9 @@ pub fn encode_png(image: &FrameImage, exposure: f32) -> Result<Vec<u8>, image::I
     Ok(bytes)
 }
 
-/// Three levels a pixel, row after row.
-fn display_levels(image: &FrameImage, tone_map: ToneMap) -> Vec<u8> {
+/// Three levels a pixel, row after row, at an exposure in stops.
+pub fn display_levels(image: &FrameImage, exposure: f32) -> Vec<u8> {
+    let tone_map = ToneMap::new(exposure);
     let mut levels = vec![0; image.pixels.len() * 3];
     let width = (image.width as usize).max(1);
     levels.par_chunks_mut(width * 3).zip(image.pixels.par_chunks(width)).enumerate().for_each(
@@ -88,7 +89,7 @@ mod tests {
     fn dither_keeps_the_mean_within_a_level() {
         for grey in [0.002, 0.1, 0.18, 0.37, 0.9] {
             let image = flat(16, 16, Vec3::splat(grey));
-            let levels = display_levels(&image, ToneMap::new(0.0));
+            let levels = display_levels(&image, 0.0);
             let wanted = 255.0 * f64::from(ToneMap::new(0.0).apply(Vec3::splat(grey)).x);
             let mean = levels.iter().map(|&l| f64::from(l)).sum::<f64>() / levels.len() as f64;
             assert!((mean - wanted).abs() <= 1.0 / 512.0 + 1e-4, "{grey}: {mean} for {wanted}");
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn black_and_white_have_no_noise() {
-        let levels = |rgb| display_levels(&flat(32, 16, rgb), ToneMap::new(0.0));
+        let levels = |rgb| display_levels(&flat(32, 16, rgb), 0.0);
         assert!(levels(Vec3::ZERO).iter().all(|&l| l == 0));
         for bright in [1e5, 1e20, f32::MAX, f32::INFINITY] {
             assert!(levels(Vec3::splat(bright)).iter().all(|&l| l == 255), "{bright}");

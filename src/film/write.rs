@@ -51,6 +51,11 @@ impl StagedFile {
         Ok(Self { temporary, destination: destination.to_path_buf() })
     }
 
+    /// Where it is before it has its name, for another program to write to.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
     /// Gives the file its name, in place of whatever file has it.
     ///
     /// # Errors

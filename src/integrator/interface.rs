@@ -109,7 +109,7 @@ mod tests {
     use crate::sampling::{SampleSeed, SampleStream, warp};
 
     fn direction(i: u32, which: u32) -> Vec3 {
-        let u = SampleStream::new(SampleSeed { seed: 3, frame: 0 }, i, which, 0).next4();
+        let u = SampleStream::new(SampleSeed::new(3), i, which, 0).next4();
         let d = warp::sphere([u[0], u[1]]);
         Vec3::new(d.x, d.y, d.z.abs().max(1e-3)).normalize()
     }

@@ -288,7 +288,7 @@ mod tests {
     }
 
     fn stream(i: u32) -> SampleStream {
-        SampleStream::new(SampleSeed { seed: 5, frame: 0 }, i, 0, 0)
+        SampleStream::new(SampleSeed::new(5), i, 0, 0)
     }
 
     /// (c nu / 2) ln((nu + 1) / (nu - 1)) - 1 is off by what the fit is: 0.002 of nu - 1 from an albedo of 0.5 on.

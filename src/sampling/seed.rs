@@ -4,6 +4,16 @@
 //! s / R of replicate s mod R. The variance of the pixel's mean comes from the spread of the replicates' means, since
 //! the points of one low-discrepancy sequence are not independent of each other.
 //!
+//! Frames either have sequences of their own or share them ([`SampleSeed::turn`]): in turn t, sample s of a pixel is
+//!
+//! ```text
+//! point t ceil(S / R) + floor(s / R) of replicate s mod R                           (1)
+//! ```
+//!
+//! With a stride S that is a power of two, what a frame takes of a sequence is an elementary block of it, stratified by
+//! itself, and the blocks of the frames 0 .. 2^k are one again (`src/study/temporal.md` shows what that brings). The
+//! points of a sequence end at 2^32; what lies beyond, or before its beginning, is another sequence.
+//!
 //! Within a sample, numbers come in sets of four. Each set is a four-dimensional Sobol sequence with its own scramble
 //! and its own order (padding, `[BURLEY20 section 4]`). Late sets, which belong to deep bounces, are plain hashes.
 
@@ -20,8 +30,19 @@ const STRATIFIED_SETS: u32 = 24;
 pub struct SampleSeed {
     /// The scene's seed.
     pub seed: u64,
-    /// The frame's key.
+    /// The frame's key; the same for frames that share their sequences.
     pub frame: i64,
+    /// The frame's place among those that take one block after the other of shared sequences.
+    pub turn: i64,
+    /// Samples of a pixel from one turn to the next: a power of two.
+    pub stride: u32,
+}
+
+impl SampleSeed {
+    /// The seed of a single frame of key 0.
+    pub const fn new(seed: u64) -> Self {
+        Self { seed, frame: 0, turn: 0, stride: 1 }
+    }
 }
 
 /// The numbers of one sample, four at a time.
@@ -35,24 +56,26 @@ pub struct SampleStream {
 impl SampleStream {
     /// The stream of sample `sample` in pixel (x, y).
     pub fn new(seed: SampleSeed, x: u32, y: u32, sample: u32) -> Self {
-        let words = [
-            seed.seed as u32,
-            (seed.seed >> 32) as u32,
-            seed.frame as u32,
-            (seed.frame >> 32) as u32,
-            x,
-            y,
-            sample % REPLICATES,
-        ];
-        let key = words.into_iter().fold(0x9e37_79b9, hash_pair);
-        Self { key, index: sample / REPLICATES, set: 0 }
+        let first = seed.turn.wrapping_mul(seed.stride.div_ceil(REPLICATES).into());
+        Self::at(key(seed, x, y, sample % REPLICATES), first, sample / REPLICATES) // (1)
     }
 
-    /// The stream of photon `photon` of pass `pass`; the photons of one pass are stratified among each other.
-    pub fn of_photon(seed: SampleSeed, pass: u32, photon: u32) -> Self {
+    /// The stream of photon `photon` of the `count` of one kind of light in pass `pass`. They are stratified among each
+    /// other, and with those of the same pass in other turns.
+    pub fn of_photon(seed: SampleSeed, pass: u32, kind: u32, count: u32, photon: u32) -> Self {
         // No pixel lies in that column.
-        let key = hash_pair(Self::new(seed, u32::MAX, pass, 0).key, 0x9d1e_57a3);
-        Self { key, index: photon, set: 0 }
+        let key = hash_pair(key(seed, u32::MAX, pass, 0), 0x9d1e_57a3 ^ kind);
+        Self::at(key, seed.turn.wrapping_mul(count.next_power_of_two().into()), photon)
+    }
+
+    /// The stream of the point that lies `offset` after point `first`; past 2^32 points another sequence begins.
+    fn at(key: u32, first: i64, offset: u32) -> Self {
+        let point = first.wrapping_add(offset.into());
+        let key = match (point >> 32) as u32 {
+            0 => key,
+            sequence => hash_pair(key, sequence),
+        };
+        Self { key, index: point as u32, set: 0 }
     }
 
     /// The next four numbers in [0, 1).
@@ -72,6 +95,20 @@ impl SampleStream {
     pub fn fork(&self, branch: u32) -> Self {
         Self { key: hash_pair(self.key ^ 0x68bc_21eb, self.set.wrapping_mul(0x9e37_79b9) ^ branch), ..*self }
     }
+}
+
+/// Names the sequence of a replicate of a pixel.
+fn key(seed: SampleSeed, x: u32, y: u32, replicate: u32) -> u32 {
+    let words = [
+        seed.seed as u32,
+        (seed.seed >> 32) as u32,
+        seed.frame as u32,
+        (seed.frame >> 32) as u32,
+        x,
+        y,
+        replicate,
+    ];
+    words.into_iter().fold(0x9e37_79b9, hash_pair)
 }
 
 /// The 24 high bits as a number in [0, 1).
@@ -112,7 +149,7 @@ fn pcg4d_round([mut x, mut y, mut z, mut w]: [u32; 4]) -> [u32; 4] {
 mod tests {
     use super::*;
 
-    const SEED: SampleSeed = SampleSeed { seed: 7, frame: 3 };
+    const SEED: SampleSeed = SampleSeed { seed: 7, frame: 3, turn: 0, stride: 64 };
 
     #[test]
     fn streams_differ_in_every_argument_and_repeat_otherwise() {
@@ -124,6 +161,10 @@ mod tests {
             first(SampleSeed { seed: 7 + (1 << 32), ..SEED }, 1, 2, 5),
             first(SampleSeed { frame: 4, ..SEED }, 1, 2, 5),
             first(SampleSeed { frame: 3 + (1 << 32), ..SEED }, 1, 2, 5),
+            first(SampleSeed { turn: 1, ..SEED }, 1, 2, 5),
+            first(SampleSeed { turn: -1, ..SEED }, 1, 2, 5),
+            // Past the end of the sequence: 2^28 turns of 16 points.
+            first(SampleSeed { turn: 1 << 28, ..SEED }, 1, 2, 5),
             first(SEED, 2, 1, 5),
             first(SEED, 1, 2, 6),
             first(SEED, 1, 2, 9),
@@ -150,6 +191,64 @@ mod tests {
             cells.sort_unstable();
             assert_eq!(cells, (0..64).collect::<Vec<_>>());
         }
+    }
+
+    /// All sets, the late ones too.
+    fn numbers(mut stream: SampleStream) -> Vec<[f32; 4]> {
+        (0..STRATIFIED_SETS + 4).map(|_| stream.next4()).collect()
+    }
+
+    #[test]
+    fn a_turn_goes_on_where_the_one_before_it_ends() {
+        let next = SampleSeed { turn: 1, ..SEED };
+        for i in [0, 1, 6, 63] {
+            assert_eq!(
+                numbers(SampleStream::new(next, 1, 2, i)),
+                numbers(SampleStream::new(SEED, 1, 2, SEED.stride + i))
+            );
+            assert_eq!(
+                numbers(SampleStream::of_photon(next, 5, 1, 100, i)),
+                numbers(SampleStream::of_photon(SEED, 5, 1, 100, 128 + i))
+            );
+        }
+        // One sample a turn stays in its replicate.
+        let turn = |turn| SampleSeed { turn, stride: 1, ..SEED };
+        assert_eq!(
+            numbers(SampleStream::new(turn(3), 1, 2, 0)),
+            numbers(SampleStream::new(turn(0), 1, 2, 3 * REPLICATES))
+        );
+        let photon = |kind| SampleStream::of_photon(SEED, 5, kind, 100, 3).next4();
+        assert_ne!(photon(0), photon(1));
+    }
+
+    /// Every box of 2^-a x 2^-b with a + b = m holds exactly one of 2^m points.
+    fn is_net(points: &[[f32; 4]], m: i32) -> bool {
+        (0..=m).all(|a| {
+            let cell = |p: &[f32; 4]| ((p[0] * 2_f32.powi(a)) as u32, (p[1] * 2_f32.powi(m - a)) as u32);
+            let cells: std::collections::BTreeSet<_> = points.iter().map(cell).collect();
+            cells.len() == points.len()
+        })
+    }
+
+    #[test]
+    fn the_frames_of_aligned_turns_are_one_net_in_each_replicate() {
+        let last = (1 << 28) - 8;
+        for (first, count) in [(0, 1), (0, 8), (4, 4), (-8, 8), (last, 8), (1 << 40, 2)] {
+            for replicate in 0..REPLICATES {
+                let of_turn = |turn| {
+                    let seed = SampleSeed { turn, ..SEED };
+                    (0..16).map(move |i| SampleStream::new(seed, 9, 4, i * REPLICATES + replicate).next4())
+                };
+                let points: Vec<_> = (first..first + count).flat_map(of_turn).collect();
+                assert!(is_net(&points, 4 + count.ilog2() as i32), "{first} {count} {replicate}");
+            }
+        }
+        // Frames of their own are nets each, but not together.
+        let of_frame = |frame| {
+            let seed = SampleSeed { frame, ..SEED };
+            (0..16).map(move |i| SampleStream::new(seed, 9, 4, i * REPLICATES).next4())
+        };
+        assert!(!is_net(&(0..8).flat_map(of_frame).collect::<Vec<_>>(), 7));
     }
 
     #[test]

@@ -58,6 +58,15 @@ pub fn is_sequence(base: &Path, pattern: &str) -> bool {
         || join(base, pattern).is_dir()
 }
 
+/// Finds the numbered pictures of a folder, of one extension, in ascending order.
+///
+/// # Errors
+/// Those of [`discover`].
+pub fn discover_pictures(folder: &Path, extension: &str) -> Result<Vec<FrameFile>, SequenceError> {
+    let is_picture = |name: &str| split_extension(name).1.eq_ignore_ascii_case(extension);
+    in_sequence(folder, &candidates(folder, is_picture)?, &format!("pictures (.{extension})"))
+}
+
 /// `base` itself when the rest is empty: joining would add a separator.
 fn join(base: &Path, rest: &str) -> PathBuf {
     if rest.is_empty() { base.to_owned() } else { base.join(rest) }
@@ -99,11 +108,16 @@ pub(super) struct Candidate {
 
 /// The meshes of a folder whose names are wanted.
 fn meshes(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<Candidate>, SequenceError> {
+    candidates(folder, |name| is_frame_name(name) && wanted(name))
+}
+
+/// The files of a folder whose names are wanted.
+fn candidates(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<Candidate>, SequenceError> {
     let candidate = |(name, path): (String, PathBuf)| {
         let (stem, rest) = name.split_at(split_extension(&name).0.len());
         Candidate { stem: stem.to_owned(), rest: rest.to_owned(), path }
     };
-    let files = list(folder)?.into_iter().filter(|(name, _)| is_frame_name(name) && wanted(name));
+    let files = list(folder)?.into_iter().filter(|(name, _)| wanted(name));
     Ok(files.map(candidate).collect())
 }
 

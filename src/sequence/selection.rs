@@ -61,6 +61,12 @@ impl FrameSelection {
         Ok(selected)
     }
 
+    /// The selected numbers in order; a range without a step has those at whole distances from its first one.
+    pub fn numbers(&self) -> impl Iterator<Item = FrameNumber> {
+        let first = self.parts.iter().map(|part| part.first).min();
+        std::iter::successors(first, |&before| self.parts.iter().filter_map(|part| part.after(before)).min())
+    }
+
     /// The single numbers of the selection that are not in a sequence; ranges take what there is.
     pub fn absent(&self, numbers: &[FrameNumber]) -> Vec<FrameNumber> {
         let single = self.parts.iter().filter(|part| part.first == part.last).map(|part| part.first);
@@ -69,6 +75,14 @@ impl FrameSelection {
 }
 
 impl Part {
+    /// The least number of the part that is greater than another, in steps of 1 where there is no step.
+    fn after(&self, before: FrameNumber) -> Option<FrameNumber> {
+        let (first, step) = (self.first.millionths(), self.step.unwrap_or(FrameNumber::ONE).millionths());
+        let steps = (before.millionths() - first).div_euclid(step) + 1;
+        let next = FrameNumber::from_millionths(first + steps.max(0) * step)?;
+        (next <= self.last).then_some(next)
+    }
+
     fn contains(&self, number: FrameNumber) -> bool {
         let offset = || number.millionths() - self.first.millionths();
         (self.first..=self.last).contains(&number)
@@ -169,6 +183,22 @@ mod tests {
         assert_eq!(selected("-2-2x2", -20..=20), [-2, 0, 2]);
         assert_eq!(selected("-7", -20..=20), [-7]);
         assert_eq!(selected(" 3 , 5 - 6 ", 0..=9), [3, 5, 6]);
+    }
+
+    #[test]
+    fn numbers_of_a_selection_come_in_order_and_once() {
+        let numbers = |text: &str| FrameSelection::parse(text).unwrap().numbers().collect::<Vec<_>>();
+        for (text, shown) in [
+            ("1-16", "1-16"),
+            ("9,3-5,4-6", "3-6,9"),
+            ("-2-2x2,1-3", "-2,0-3"),
+            ("1.5-3", "1.5,2.5"),
+            ("7", "7"),
+            ("1000000000000", "1000000000000"),
+        ] {
+            assert_eq!(format_numbers(&numbers(text)), shown, "{text}");
+        }
+        assert_eq!(numbers("1-3,2-4").len(), 4);
     }
 
     #[test]

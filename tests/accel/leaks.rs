@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::meshes::Mesh;
 
-const SEED: SampleSeed = SampleSeed { seed: 1, frame: 0 };
+const SEED: SampleSeed = SampleSeed::new(1);
 
 /// Casts rays that `ray` makes of random numbers and counts those that miss.
 fn leaks(mesh: &Mesh, rays: u32, ray: impl Fn(u32, [f32; 4]) -> Ray + Sync) -> usize {

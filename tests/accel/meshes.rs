@@ -50,7 +50,7 @@ impl Mesh {
         let mut mesh = Self::blob(levels);
         let half_edge = 0.5 * std::f32::consts::FRAC_PI_2 / 2.0_f32.powi(levels as i32);
         for (i, p) in mesh.positions.iter_mut().enumerate() {
-            let u = SampleStream::new(SampleSeed { seed: 9, frame: 0 }, i as u32, 0, 0).next4();
+            let u = SampleStream::new(SampleSeed::new(9), i as u32, 0, 0).next4();
             *p += (Vec3::new(u[0], u[1], u[2]) * 2.0 - 1.0) * half_edge;
         }
         mesh

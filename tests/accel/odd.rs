@@ -11,7 +11,7 @@ use crate::meshes::Mesh;
 /// Rays of all directions from around the origin, for a mesh of size `scale`.
 fn rays(count: u32, scale: f32) -> impl Iterator<Item = Ray> {
     (0..count).map(move |i| {
-        let u = SampleStream::new(SampleSeed { seed: 2, frame: 0 }, i, 0, 0).next4();
+        let u = SampleStream::new(SampleSeed::new(2), i, 0, 0).next4();
         Ray::new(Vec3::new(u[2], u[3], 0.1) * (0.3 * scale), warp::sphere([u[0], u[1]]))
     })
 }

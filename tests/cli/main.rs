@@ -1,11 +1,14 @@
 //! The command as a user meets it: run as a process, in folders of its own.
 #![allow(clippy::unwrap_used)]
 
+mod encode;
 mod folders;
 mod integrators;
+mod preview;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
+mod study;
 
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -60,7 +60,7 @@ fn check(name: &str, scene: &Prepared, bodies: &[(&TestMesh, f64)]) {
     let (mut off, mut within, mut worst) = (0, 0, 0.0_f64);
     for i in 0..width * height {
         let point = [(i % width) as f32 + 0.5, (i / width) as f32 + 0.5];
-        let stream = SampleStream::new(SampleSeed { seed: 1, frame: 0 }, i, 0, 0);
+        let stream = SampleStream::new(SampleSeed::new(1), i, 0, 0);
         let ray = camera.ray(point[0], point[1]);
         let found = scene.sampling.integrator.sample(frame, &mut scratch, &ray, &wavelengths, stream, None);
         let depth = depth(bodies, ray.origin.as_dvec3() + frame.origin, ray.direction.as_dvec3());

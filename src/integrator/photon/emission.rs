@@ -9,7 +9,8 @@
 //! * Emitting triangles: a point by power, and a direction in the cone around the sphere of all that does not emit; by the
 //!   cosine where the point is inside of it.
 //!
-//! Kinds that are there get equal numbers: photons 0, k, 2k, .. of k kinds are the first's.
+//! Kinds that are there get equal numbers: photons 0, k, 2k, .. of k kinds are the first's. Each kind has sequences of its
+//! own: every k-th point of one would miss parts of the domain.
 
 use std::f32::consts::PI;
 
@@ -90,6 +91,11 @@ impl Emission {
         self.seen.radius.min(self.scene.radius)
     }
 
+    /// How many kinds of light emit photons, at least 1.
+    pub(super) fn kinds(&self) -> u32 {
+        (self.kinds.len() as u32).max(1)
+    }
+
     /// True when some light emits photons.
     pub(super) fn is_possible(&self) -> bool {
         !self.kinds.is_empty() && self.scene.radius > 0.0
@@ -103,7 +109,7 @@ impl Emission {
         (index, count): (u32, u32),
         stream: &mut SampleStream,
     ) -> Option<Emitted> {
-        let kinds = self.kinds.len() as u32;
+        let kinds = self.kinds();
         let kind = self.kinds[(index % kinds) as usize];
         // Photons index % kinds, + kinds, .. below count.
         let of_kind = (count - index % kinds).div_ceil(kinds) as f32;

@@ -268,7 +268,7 @@ mod tests {
     use crate::sampling::{SampleSeed, SampleStream};
 
     fn number(i: u32) -> Vec3 {
-        let u = SampleStream::new(SampleSeed { seed: 5, frame: 0 }, i, 0, 0).next4();
+        let u = SampleStream::new(SampleSeed::new(5), i, 0, 0).next4();
         Vec3::new(u[0], u[1], u[2] * u[2])
     }
 

@@ -186,7 +186,11 @@ impl PhotonFrame {
         let seed = self.seed;
         let [u, v, ..] = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4();
         let common = (Wavelengths::for_mode(frame.mode, u), frame.views.time(v));
-        (common, move |photon| SampleStream::of_photon(seed, pass, photon))
+        let kinds = self.emission.as_ref().map_or(1, Emission::kinds);
+        let of_kind = self.count.div_ceil(kinds);
+        let stream =
+            move |photon| SampleStream::of_photon(seed, pass, photon % kinds, of_kind, photon / kinds);
+        (common, stream)
     }
 
     fn trace(

@@ -82,12 +82,14 @@ max_depth = 0
 split = 1
 similarity = 2
 seed = 0
+seed_mode = "sequence"
 filter = "box"
 
 [output]
 path = "out/frame_####.exr"
 png = true
 exposure = 0.5
+denoise = true
 aovs = ["albedo", "N", "P", "Z", "motion", "variance"]
 "#;
 
@@ -134,6 +136,7 @@ radiance = { blackbody = 1500 }
 integrator = "path"
 filter = "blackman-harris"
 seed = 18446744073709551615
+seed_mode = "static"
 "#;
 
 const SURFACES: &str = r#"
@@ -260,6 +263,7 @@ density = { stratified = 2 }
 
 [render]
 integrator = "single-scattering"
+seed_mode = "frame"
 forced_scattering = 2
 "#;
 

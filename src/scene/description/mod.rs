@@ -417,6 +417,8 @@ pub struct RenderDescription {
     pub similarity: u32,
     /// Seed of every random number (0).
     pub seed: u64,
+    /// What frames share of their random numbers; `None` is `sequence` where that is possible, else `frame`.
+    pub seed_mode: Option<SeedMode>,
     /// Pixel filter (box).
     pub filter: FilterKind,
     /// Photons of the photon integrator.
@@ -475,6 +477,32 @@ pub enum IntegratorKind {
     AmbientOcclusion,
 }
 
+/// `render.seed_mode`
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeedMode {
+    /// Every frame has numbers of its own.
+    Frame,
+    /// Frames take one block after the other of the same low-discrepancy sequences.
+    Sequence,
+    /// Every frame has the same numbers.
+    Static,
+}
+
+impl SeedMode {
+    /// Every mode, by its name in the scene file.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("frame", Self::Frame), ("sequence", Self::Sequence), ("static", Self::Static)];
+
+    /// Its name in the scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Frame => "frame",
+            Self::Sequence => "sequence",
+            Self::Static => "static",
+        }
+    }
+}
+
 /// `render.filter`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FilterKind {
@@ -496,6 +524,8 @@ pub struct OutputDescription {
     pub png: bool,
     /// Exposure of the PNG in stops (0).
     pub exposure: f32,
+    /// Also write each picture without its noise (false).
+    pub denoise: bool,
     /// Extra layers of the EXR.
     pub aovs: Vec<Aov>,
 }

@@ -7,7 +7,7 @@ use super::{Aov, OutputDescription};
 
 impl Default for OutputDescription {
     fn default() -> Self {
-        Self { path: None, png: true, exposure: 0.0, aovs: Vec::new() }
+        Self { path: None, png: true, exposure: 0.0, denoise: false, aovs: Vec::new() }
     }
 }
 
@@ -29,6 +29,7 @@ pub(super) fn read(value: &Value<'_>) -> Result<OutputDescription, SceneError> {
         path: path.map(str::to_owned),
         png: table.get("png").map_or(Ok(default.png), |v| v.boolean())?,
         exposure: table.get("exposure").map_or(Ok(default.exposure), |v| v.number32(&Allowed::STOPS))?,
+        denoise: table.get("denoise").map_or(Ok(default.denoise), |v| v.boolean())?,
         aovs: table.get("aovs").map_or(Ok(default.aovs), |v| aovs(&v))?,
     };
     table.finish()?;

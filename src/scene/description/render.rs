@@ -3,7 +3,7 @@
 use super::allowed::Allowed;
 use super::error::SceneError;
 use super::value::Value;
-use super::{FilterKind, IntegratorKind, KernelKind, PhotonDescription, RenderDescription};
+use super::{FilterKind, IntegratorKind, KernelKind, PhotonDescription, RenderDescription, SeedMode};
 use crate::optics::similarity::HIGHEST_ORDER;
 
 impl Default for RenderDescription {
@@ -16,6 +16,7 @@ impl Default for RenderDescription {
             forced_scattering: 0,
             similarity: 0,
             seed: 0,
+            seed_mode: None,
             filter: FilterKind::Box,
             photons: PhotonDescription::default(),
         }
@@ -79,6 +80,7 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
         forced_scattering: whole("forced_scattering", 0, MOST_SPLITS, default.forced_scattering)?,
         similarity: whole("similarity", 0, HIGHEST_ORDER as i128, default.similarity)?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
+        seed_mode: table.get("seed_mode").map(|v| v.choice(&SeedMode::ALL)).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |v| v.choice(&FILTERS))?,
         photons: table.get("photons").map_or(Ok(default.photons), |v| photons(&v))?,
     };

@@ -1,0 +1,15 @@
+//! Finds out how well pictures are made: renders the same frames in several ways and compares.
+//!
+//! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
+//! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
+//! * [`table`] writes results for people and for programs.
+#![doc = include_str!("temporal.md")]
+
+pub mod error;
+pub mod seed_modes;
+pub mod table;
+pub mod temporal;
+
+pub use error::StudyError;
+pub use seed_modes::{SeedModeStudy, TemporalStudy, study_seed_modes};
+pub use temporal::{TemporalErrors, TemporalMetrics};
