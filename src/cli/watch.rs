@@ -12,7 +12,7 @@ use super::streams::{print, say};
 use super::watching::Watching;
 use crate::driver::watch::{End, Order};
 use crate::driver::{Interrupt, RenderError, RenderOptions, WatchOptions, WatchReport, watch};
-use crate::sequence::{FrameNumber, format_numbers};
+use crate::sequence::{FrameNumber, SequenceError, format_numbers};
 
 #[derive(Debug, Args)]
 pub struct WatchArguments {
@@ -98,7 +98,12 @@ pub fn run(arguments: &WatchArguments) -> Exit {
         }
         Err(error) => {
             say(&format!("error: {error}"));
-            Exit::from(&error)
+            match error {
+                RenderError::Sequence(SequenceError::NoPlace { .. }) if arguments.output.is_some() => {
+                    Exit::Usage
+                }
+                error => Exit::from(&error),
+            }
         }
     }
 }
@@ -109,20 +114,20 @@ type Outcome = Result<Result<WatchReport, RenderError>, Exit>;
 /// Watches, with a page if one is asked for.
 #[cfg(feature = "serve")]
 fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watching) -> Outcome {
-    use super::serve::{Board, Both, Server};
+    use super::serve::{Board, Both, serve};
     let Some(port) = arguments.serve else { return Ok(watch(&arguments.scene, options, watching)) };
     let board = std::sync::Arc::new(Board::default());
-    let server = Server::start(arguments.serve_address, port, board.clone()).map_err(|reason| {
+    let bound = serve(arguments.serve_address, port, board.clone()).map_err(|reason| {
         say(&format!(
             "error: cannot serve at {}, port {port}: {reason}; choose another port",
             arguments.serve_address
         ));
         Exit::CannotCreate
     })?;
-    if !server.address.ip().is_loopback() {
+    if !bound.ip().is_loopback() {
         say("warning: whoever reaches this machine can see the pictures");
     }
-    say(&format!("page at http://{}/", server.address));
+    say(&format!("page at http://{}/", bound));
     let both = Both { first: watching, board: &board };
     Ok(watch(&arguments.scene, options, &both))
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::error::RenderError;
 use super::ready::{Readiness, Rules, Signature};
@@ -149,15 +149,16 @@ impl Arrivals {
     pub fn scan(&mut self, now: Duration) -> Result<Option<String>, SequenceError> {
         let nothing =
             |error: &io::Error| matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory);
+        let clock = Instant::now();
         match discover(&self.base, &self.pattern) {
             Ok(files) => {
                 self.trouble = None;
-                self.take(files, now);
+                self.take(files, now, clock);
                 Ok(None)
             }
             Err(SequenceError::NothingFound { .. }) => {
                 self.trouble = None;
-                self.take(Vec::new(), now);
+                self.take(Vec::new(), now, clock);
                 Ok(None)
             }
             Err(SequenceError::Io { source, .. }) if nothing(&source) => Ok(None),
@@ -165,7 +166,7 @@ impl Arrivals {
             Err(error) => {
                 let known =
                     self.frames.iter().map(|(number, a)| FrameFile { number: *number, path: a.path.clone() });
-                self.take(known.collect(), now);
+                self.take(known.collect(), now, clock);
                 Ok(self.complain(error.to_string(), now))
             }
         }
@@ -187,7 +188,8 @@ impl Arrivals {
         }
     }
 
-    fn take(&mut self, files: Vec<FrameFile>, now: Duration) {
+    /// `since` is when the listing began; what is new may be so only since its signature was taken.
+    fn take(&mut self, files: Vec<FrameFile>, since: Duration, clock: Instant) {
         let there: BTreeMap<FrameNumber, (PathBuf, Signature)> = files
             .into_iter()
             .filter_map(|file| {
@@ -195,6 +197,7 @@ impl Arrivals {
                 Some((file.number, (file.path, Signature::of(&metadata))))
             })
             .collect();
+        let now = since + clock.elapsed();
         let before = self.frames.len();
         self.frames.retain(|number, _| there.contains_key(number));
         let mut any_change = self.frames.len() < before;

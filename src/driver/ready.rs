@@ -126,6 +126,8 @@ pub enum Verdict {
 pub struct Look {
     /// When it began.
     pub at: Duration,
+    /// When the last signature was taken.
+    pub end: Duration,
     /// The signature before the bytes were read.
     pub before: Signature,
     /// The signature after that, of whatever had the name then; `None` when nothing had.
@@ -176,9 +178,8 @@ impl Readiness {
     /// Decides after a look.
     pub fn judge(&mut self, look: &Look, rules: &Rules) -> Verdict {
         let Some(after) = look.after.filter(|after| *after == look.before && *after == self.signature) else {
-            self.seen(look.after.unwrap_or(look.before), look.at);
-            // What was read may be of neither signature.
-            *self = Self::new(self.signature, look.at);
+            // Even if it is the signature that is known: what was read may be of another.
+            *self = Self::new(look.after.unwrap_or(look.before), look.end);
             return Verdict::Changed;
         };
         let quiet = look.at.saturating_sub(self.since);

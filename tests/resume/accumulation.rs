@@ -38,13 +38,13 @@ fn check(integrator: &str, seed: u64) {
     edit(&folder, "samples = 4", &format!("samples = 4\nintegrator = \"{integrator}\"\n{photons}"));
     let job = Job::open(&folder.path("boxes/scene.toml")).unwrap();
     let task = &job.tasks()[0];
-    let frame = job.world.assemble(task.number, task.read().unwrap(), None).unwrap().frame;
+    let frame = job.world.assemble(task.number, task.read(&job.world.velocity_name()).unwrap(), None).unwrap().frame;
     let sampling = Sampling::new(&job.world.description.render);
     let alone = render_pixels(&frame, &sampling, &|_, _| ());
     let (mut numbers, mut stops) = (Numbers(seed), 0);
     for threads in [1, 1, 2, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut accumulation = Accumulation::new(frame.camera.resolution());
+        let mut accumulation = Accumulation::new(frame.views.opening.resolution());
         loop {
             let control =
                 Impatient { left: AtomicU64::new(1 + numbers.below(400)), rests: 2 + numbers.below(100) };

@@ -1,6 +1,7 @@
 //! Frames that are drawn while they are written: none from incomplete bytes, none lost, whatever the writer does.
 #![allow(clippy::unwrap_used)]
 
+mod command;
 mod ends;
 mod manners;
 mod simulator;

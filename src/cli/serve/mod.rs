@@ -14,4 +14,4 @@ mod server;
 mod thumbnail;
 
 pub use board::{Board, Both};
-pub use server::Server;
+pub use server::serve;

@@ -4,7 +4,6 @@ use std::io::Cursor;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::thread::JoinHandle;
 
 use tiny_http::{Header, Method, Request, Response};
 
@@ -17,44 +16,24 @@ const PAGE: &str = include_str!("page.html");
 const POLICY: &str = "default-src 'none'; img-src 'self'; connect-src 'self'; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline'";
 
-/// A thread that answers until it is stopped.
-pub struct Server {
-    http: Arc<tiny_http::Server>,
-    thread: Option<JoinHandle<()>>,
-    /// Where it listens.
-    pub address: SocketAddr,
-}
-
 /// A kind of contents, and the contents.
 type Found = (&'static str, Vec<u8>);
 
-impl Server {
-    /// Listens at an address; port 0 is one that is free.
-    ///
-    /// # Errors
-    /// What the system says when it cannot.
-    pub fn start(address: IpAddr, port: u16, board: Arc<Board>) -> Result<Self, String> {
-        let http = tiny_http::Server::http((address, port)).map_err(|error| error.to_string())?;
-        let http = Arc::new(http);
-        let bound = http.server_addr().to_ip().unwrap_or(SocketAddr::new(address, port));
-        let listening = http.clone();
-        let thread = std::thread::spawn(move || {
-            for request in listening.incoming_requests() {
-                answer(request, &board, bound.ip().is_loopback());
-            }
-        });
-        Ok(Self { http, thread: Some(thread), address: bound })
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        self.http.unblock();
-        if let Some(thread) = self.thread.take() {
-            // A panic in it has been told, and takes nothing else with it.
-            let _ = thread.join();
+/// Answers at an address from now until the process ends, on a thread of its own; port 0 is one that is free. Returns
+/// where it listens.
+///
+/// # Errors
+/// What the system says when it cannot.
+pub fn serve(address: IpAddr, port: u16, board: Arc<Board>) -> Result<SocketAddr, String> {
+    let http = tiny_http::Server::http((address, port)).map_err(|error| error.to_string())?;
+    let bound = http.server_addr().to_ip().unwrap_or(SocketAddr::new(address, port));
+    // Nobody waits for it: a browser that does not take its answer must not keep the watch from ending.
+    std::thread::spawn(move || {
+        for request in http.incoming_requests() {
+            answer(request, &board, bound.ip().is_loopback());
         }
-    }
+    });
+    Ok(bound)
 }
 
 fn answer(request: Request, board: &Board, is_local: bool) {

@@ -167,7 +167,7 @@ impl<'a> Watch<'a> {
             Ok(read) => read,
             Err(source) => {
                 let before = arrival.readiness.signature();
-                let look = Look { at, before, after: Some(before), found: None };
+                let look = Look { at, end: at, before, after: Some(before), found: None };
                 return Some(Found {
                     look,
                     contents: Err(MeshError::Io { path, source }),
@@ -175,7 +175,7 @@ impl<'a> Watch<'a> {
                 });
             }
         };
-        let mut look = Look { at, before, after, found: Some(Proof::Proven) };
+        let mut look = Look { at, end: at + start.elapsed(), before, after, found: Some(Proof::Proven) };
         let (bytes, source) = match Inputs::of_frame(&self.job.world, number, std::slice::from_ref(&path)) {
             Err(error) => (bytes, Err(error)),
             Ok(inputs) => {

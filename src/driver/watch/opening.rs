@@ -4,6 +4,7 @@
 //! whole, and a camera without placement frames that one; so a frame has to be read before the scene can be opened.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use super::lookout::Lookout;
 use super::status::{Phase, WatchStatus};
@@ -88,7 +89,9 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
     let rules = lookout.arrivals.rules();
     let number = lookout.arrivals.next(Order::Oldest, now, |_, _| true)?;
     let arrival = lookout.arrivals.get_mut(number)?;
+    let start = Instant::now();
     let read = read_signed(&arrival.path);
+    let end = now + start.elapsed();
     let (before, after) = read.as_ref().map_or_else(
         |_| (arrival.readiness.signature(), Some(arrival.readiness.signature())),
         |(before, _, after)| (*before, *after),
@@ -98,7 +101,7 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
         Err(source) => Err(MeshError::Io { path: arrival.path.clone(), source }),
     };
     let found = inspected.as_ref().ok().map(|inspected| inspected.proof);
-    let look = Look { at: now, before, after, found };
+    let look = Look { at: now, end, before, after, found };
     match (arrival.readiness.judge(&look, &rules), inspected) {
         (Verdict::Accepted, Ok(Inspected { mesh, .. })) => {
             arrival.readiness.wanted_again(&look);
