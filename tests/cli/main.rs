@@ -3,6 +3,7 @@
 
 mod folders;
 mod integrators;
+mod meshes;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
