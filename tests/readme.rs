@@ -15,6 +15,16 @@ fn the_scene_file_of_the_readme_parses() {
     assert!(scene.is_ok(), "{}", scene.unwrap_err());
 }
 
+/// Of media that the first scene file of the README has, or that are left to the reader.
+#[test]
+fn the_meshes_of_the_readme_parse() {
+    let text = README.split("```toml\n").nth(2).and_then(|rest| rest.split("```").next());
+    let media = "[media.sea]\n[media.ice]\n[media.snow]\n[media.glass]\n";
+    let text = media.to_owned() + text.unwrap_or_else(|| panic!("the README has no meshes"));
+    let scene = SceneDescription::parse(&text, Path::new("README.md"));
+    assert_eq!(scene.unwrap_or_else(|e| panic!("{e}")).meshes.len(), 3);
+}
+
 #[test]
 fn the_test_command_of_the_readme_is_what_the_checks_run() {
     let command = "cargo test --release";

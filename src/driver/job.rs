@@ -235,7 +235,9 @@ pub(super) fn find_scene(path: &Path) -> Result<SceneFile, RenderError> {
 /// Checks that a scene that was written earlier is about this folder: two folders may have the same name.
 fn check_folder(scene: &Path, folder: &Path) -> Result<(), RenderError> {
     let description = SceneDescription::from_file(scene)?;
-    let Some(frames) = description.frames else { return Ok(()) };
+    // What is about other meshes by now is not about those that it was written for.
+    let frames = description.frames.filter(|_| description.meshes.is_empty());
+    let Some(frames) = frames else { return Ok(()) };
     let is_inside = normalised(&description.directory.join(&frames.path)).starts_with(normalised(folder));
     if is_inside {
         return Ok(());

@@ -185,8 +185,8 @@ impl Sample<'_> {
         }
         if let Some(pass) = photons {
             let way = Ray { t_max: found.map_or(f32::INFINITY, |hit| hit.t), ..ray };
-            self.radiance +=
-                branch.throughput * self.scattered_in(pass, branch, &way, found.map(|hit| hit.triangle));
+            let end = found.and_then(|hit| self.visible_end(branch, &hit));
+            self.radiance += branch.throughput * self.scattered_in(pass, branch, &way, end);
         }
         found.filter(|hit| hit.t <= t_max)
     }

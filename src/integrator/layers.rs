@@ -221,6 +221,14 @@ impl Sample<'_> {
         Way::new(self, ray, insides).next()
     }
 
+    /// The triangle that ends the medium of a path where it meets one; `None` where that is hidden.
+    pub(super) fn visible_end(&mut self, branch: &Branch, found: &Hit) -> Option<u32> {
+        let Surface::Layer(_) = self.frame.surface(found.triangle) else { return Some(found.triangle) };
+        let hit = self.frame.geometry.surface_hit(found, branch.direction, self.time);
+        let crossing = self.crossing(branch, &hit).filter(|crossing| !crossing.is_hidden())?;
+        Some(crossing.stronger.map_or(found.triangle, |face| face.triangle))
+    }
+
     /// True for a triangle of a mesh that a stronger one hides from a path.
     pub(super) fn is_hidden(&self, branch: &Branch, triangle: u32) -> bool {
         let Surface::Layer(layer) = self.frame.surface(triangle) else { return false };

@@ -4,6 +4,7 @@
 mod encode;
 mod folders;
 mod integrators;
+mod meshes;
 mod preview;
 mod similarity;
 #[path = "../small/mod.rs"]

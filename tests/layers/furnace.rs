@@ -11,7 +11,7 @@ use crate::common::scene::SceneFolder;
 fn overlapping_bodies_vanish_in_white_surroundings() {
     let folder = SceneFolder::new()
         .mesh("a.ply", &cuboid(DVec3::splat(-0.7), DVec3::splat(0.6)))
-        .mesh("b.ply", &sphere(DVec3::splat(0.4), 0.6, 2))
+        .mesh("b.ply", &sphere(DVec3::splat(0.4), 0.6, 4))
         .mesh("c.ply", &cuboid(DVec3::new(-0.7, -0.2, -0.9), DVec3::new(0.6, 0.8, 0.2)));
     for (iors, scattering, lamps) in [
         ([1.33, 1.5, 1.31], 0, 0),

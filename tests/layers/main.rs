@@ -7,7 +7,9 @@ mod common;
 #[allow(dead_code)]
 mod seeds;
 
+mod floes;
 mod furnace;
 mod refused;
+mod shapes;
 mod straight;
 mod tanks;

@@ -47,7 +47,8 @@ fn kernel(pass: &PhotonPass, squared: f32, reach: f32) -> f32 {
 const STEEPEST: f32 = 32.0;
 
 impl Sample<'_> {
-    /// Radiance that arrives at the start of a ray from photons scattered into it; `end` is the triangle that it ends on.
+    /// Radiance that arrives at the start of a ray from photons scattered into it; `end` is the triangle that it ends on,
+    /// unless that is hidden: there the ray that goes on takes what this one does not.
     ///
     /// Where a ray begins or ends at a surface that it meets obliquely, photons beside its line may lie before the one or
     /// behind the other and yet in the medium. No other ray takes the part of their flux that the kernel spreads beyond
@@ -66,10 +67,10 @@ impl Sample<'_> {
         let medium = self.scratch.media[branch.medium.0 as usize];
         let described = self.frame.medium(branch.medium);
         let geometry = &self.frame.geometry;
-        let start = Some(branch.leaves).filter(|&triangle| triangle != u32::MAX);
-        // At a hidden triangle the ray that goes on takes what this one does not.
-        let ends = [start, end].map(|end| end.filter(|&triangle| !self.is_hidden(branch, triangle)));
-        let slopes = ends.map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction, ray.time)));
+        let is_start = |&triangle: &u32| triangle != u32::MAX && !self.is_hidden(branch, triangle);
+        let start = Some(branch.leaves).filter(is_start);
+        let slopes =
+            [start, end].map(|triangle| triangle.map(|id| geometry.slope(id, ray.direction, ray.time)));
         let beyond = slopes.map(|slope| slope.map_or(0.0, Vec3::length).min(STEEPEST));
         let before = slopes[0].unwrap_or(Vec3::ZERO);
         let mut sum = Lanes::ZERO;

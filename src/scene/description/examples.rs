@@ -10,11 +10,12 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 9] = [
+pub const EXAMPLES: [Example; 10] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
     Example { name: "surfaces", text: SURFACES },
+    Example { name: "several meshes", text: MESHES },
     Example { name: "automatic camera", text: AUTOMATIC_CAMERA },
     Example { name: "plain numbers", text: PLAIN_NUMBERS },
     Example { name: "phase functions", text: PHASE_FUNCTIONS },
@@ -184,6 +185,37 @@ horizontal_fov = 60.5
 [render]
 integrator = "ambient-occlusion"
 filter = "gaussian"
+"#;
+
+const MESHES: &str = r#"
+[frames]
+scale = 0.001
+normals = "flat"
+
+[media.sea]
+ior = 1.33
+
+[media.ice]
+ior = 1.31
+
+[media.glass]
+ior = 1.5
+
+[[meshes]]
+path = "water_####.ply"
+inside = "sea"
+
+[[meshes]]
+path = "floes"
+regions = { 1 = "ice", 2 = "sea" }
+priority = 1
+normals = "smooth"
+transform = { scale = 0.01, translate = [0, 0, 0.1] }
+
+[[meshes]]
+path = "tank.obj"
+inside = "glass"
+priority = 2
 "#;
 
 const AUTOMATIC_CAMERA: &str = r#"
