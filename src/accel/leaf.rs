@@ -125,7 +125,8 @@ impl Leaf {
     pub fn turned_triangle(&self, lane: usize, change: impl Change<Self>, axes: [usize; 3]) -> [Vec3A; 3] {
         let vertex = |corner: usize| {
             let vertex = usize::from(self.corners[corner][lane] & 7);
-            Vec3A::from(axes.map(|axis| change.number(self, |leaf| leaf.vertices[axis].0[vertex])))
+            let coordinate = |axis: usize| change.number(self, |leaf| leaf.vertices[axis].0[vertex]);
+            Vec3A::new(coordinate(axes[0]), coordinate(axes[1]), coordinate(axes[2]))
         };
         [vertex(0), vertex(1), vertex(2)]
     }
@@ -133,10 +134,11 @@ impl Leaf {
     /// The triangles that the ray may meet; none that it does meet is left out.
     #[inline(always)]
     pub fn candidates<L: Lanes>(&self, change: impl Change<Self>, ray: &LeafRay<L>) -> Option<Candidates> {
-        let [x, y, z]: [L; 3] = ray.axes.map(|axis| change.lanes(self, |leaf| &leaf.vertices[axis]));
-        let z = z.sub(ray.origin[2]);
-        let x = x.sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
-        let y = y.sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
+        let along = |axis: usize| -> L { change.lanes(self, |leaf| &leaf.vertices[axis]) };
+        let [kx, ky, kz] = ray.axes;
+        let z = along(kz).sub(ray.origin[2]);
+        let x = along(kx).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
+        let y = along(ky).sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
         let [a, b, c] = &self.corners;
         let (ax, bx, cx) = (x.pick(a), x.pick(b), x.pick(c));
         let (ay, by, cy) = (y.pick(a), y.pick(b), y.pick(c));

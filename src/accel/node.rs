@@ -81,7 +81,8 @@ impl Node {
     #[inline(always)]
     pub fn squared_distances<L: Lanes>(&self, change: impl Change<Self>, point: &[L; 3]) -> L {
         let along = |a: usize| {
-            let [min, max]: [L; 2] = [0, 1].map(|side| change.lanes(self, |node| &node.planes[a][side]));
+            let min: L = change.lanes(self, |node| &node.planes[a][0]);
+            let max: L = change.lanes(self, |node| &node.planes[a][1]);
             let outside = min.sub(point[a]).max(point[a].sub(max)).max(L::splat(0.0));
             outside.mul(outside)
         };

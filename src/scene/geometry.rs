@@ -68,9 +68,12 @@ impl Geometry {
     /// The three vertices of a triangle at a time in frames: rounded as the hierarchy does it, so that both have the same.
     #[inline]
     pub fn vertices_at(&self, triangle: u32, time: f32) -> [Vec3; 3] {
-        if self.motions.is_empty() {
-            return self.vertices(triangle);
-        }
+        if self.motions.is_empty() { self.vertices(triangle) } else { self.moved_vertices(triangle, time) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn moved_vertices(&self, triangle: u32, time: f32) -> [Vec3; 3] {
         self.triangles[triangle as usize]
             .map(|i| self.positions[i as usize] + self.motions[i as usize] * time)
     }
@@ -113,37 +116,66 @@ impl Geometry {
     /// normal on that side, without shading normals. At a time in frames.
     #[inline]
     pub fn interpolated_normal(&self, hit: &Hit, ng: Vec3, time: f32) -> Vec3 {
-        let corners = self.corners[hit.triangle as usize];
-        if corners == Self::FLAT {
-            return ng;
-        }
-        let side = if hit.from_front { 1.0 } else { -1.0 };
-        let [a, b, c] = corners.map(|i| self.normal(i as usize, time));
-        let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
-        mixed.normalize_or(ng * side) * side
-    }
-
-    #[inline]
-    fn normal(&self, index: usize, time: f32) -> Vec3 {
-        let normal = self.normals[index];
-        if self.normal_changes.is_empty() { normal } else { normal + self.normal_changes[index] * time }
+        let moves = !self.normal_changes.is_empty();
+        mixed(hit, ng, if moves { self.moved_normals(hit, time) } else { self.corner_normals(hit) })
     }
 
     /// Point and normals at a hit of a ray with unit `direction`, at a time in frames.
+    #[inline]
     pub fn surface_hit(&self, hit: &Hit, direction: Vec3, time: f32) -> SurfaceHit {
-        let v = self.vertices_at(hit.triangle, time);
-        let side = if hit.from_front { 1.0 } else { -1.0 };
-        let ng = unit_normal(&v) * side;
-        let ns = self.interpolated_normal(hit, ng, time);
-        let ns = if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng };
-        SurfaceHit {
-            triangle: hit.triangle,
-            t: hit.t,
-            point: SurfacePoint::on_triangle(&v, hit.barycentric),
-            ng,
-            ns,
-            from_front: hit.from_front,
+        if !self.motions.is_empty() {
+            return self.moved_surface_hit(hit, direction, time);
         }
+        surface_hit(hit, direction, &self.vertices(hit.triangle), self.corner_normals(hit))
+    }
+
+    // Apart, so that it does not weigh on what stands still.
+    #[cold]
+    #[inline(never)]
+    fn moved_surface_hit(&self, hit: &Hit, direction: Vec3, time: f32) -> SurfaceHit {
+        let normals = self.moved_normals(hit, time);
+        surface_hit(hit, direction, &self.vertices_at(hit.triangle, time), normals)
+    }
+
+    /// The shading normals at the corners of a triangle when the shutter opens, if it has any.
+    #[inline(always)]
+    fn corner_normals(&self, hit: &Hit) -> Option<[Vec3; 3]> {
+        let corners = self.corners[hit.triangle as usize];
+        (corners != Self::FLAT).then(|| corners.map(|i| self.normals[i as usize]))
+    }
+
+    fn moved_normals(&self, hit: &Hit, time: f32) -> Option<[Vec3; 3]> {
+        let mut normals = self.corner_normals(hit)?;
+        if !self.normal_changes.is_empty() {
+            let corners = self.corners[hit.triangle as usize];
+            (0..3).for_each(|k| normals[k] += self.normal_changes[corners[k] as usize] * time);
+        }
+        Some(normals)
+    }
+}
+
+/// The interpolated normal on the side that a hit is seen from, or `ng`.
+#[inline(always)]
+fn mixed(hit: &Hit, ng: Vec3, normals: Option<[Vec3; 3]>) -> Vec3 {
+    let Some([a, b, c]) = normals else { return ng };
+    let side = if hit.from_front { 1.0 } else { -1.0 };
+    let mixed = a * hit.barycentric.x + b * hit.barycentric.y + c * hit.barycentric.z;
+    mixed.normalize_or(ng * side) * side
+}
+
+#[inline(always)]
+fn surface_hit(hit: &Hit, direction: Vec3, v: &[Vec3; 3], normals: Option<[Vec3; 3]>) -> SurfaceHit {
+    let side = if hit.from_front { 1.0 } else { -1.0 };
+    let ng = unit_normal(v) * side;
+    let ns = mixed(hit, ng, normals);
+    let ns = if ns.dot(direction) < 0.0 && ns.dot(ng) > 0.0 { ns } else { ng };
+    SurfaceHit {
+        triangle: hit.triangle,
+        t: hit.t,
+        point: SurfacePoint::on_triangle(v, hit.barycentric),
+        ng,
+        ns,
+        from_front: hit.from_front,
     }
 }
 

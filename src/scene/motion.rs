@@ -27,10 +27,10 @@ pub(super) struct Pace {
 impl World {
     /// How velocities become motions; `None` where nobody asks for them.
     pub(super) fn pace(&self) -> Option<Pace> {
-        let frames = self.frames()?;
-        let is_asked = self.tells_motion() || self.description.camera.shutter > 0.0;
-        let is_asked = is_asked && frames.velocity != VelocityDescription::None;
-        is_asked.then_some(Pace { fps: frames.fps, shutter: self.description.camera.shutter })
+        let shutter = self.description.camera.shutter;
+        let is_asked =
+            (self.tells_motion() || shutter > 0.0) && self.velocities() != &VelocityDescription::None;
+        is_asked.then(|| Pace { fps: self.frames().map_or(24.0, |f| f.fps), shutter })
     }
 
     /// True when pictures tell where things go until the next frame.
@@ -40,16 +40,20 @@ impl World {
 
     /// Which velocities are read from meshes that change from frame to frame.
     pub fn velocity_name(&self) -> VelocityName {
-        match (self.pace(), self.frames().map(|frames| &frames.velocity)) {
-            (Some(_), Some(VelocityDescription::Auto)) => VelocityName::Known,
-            (Some(_), Some(VelocityDescription::Property(name))) => VelocityName::Only(name.clone()),
+        match (self.pace(), self.velocities()) {
+            (Some(_), VelocityDescription::Auto) => VelocityName::Known,
+            (Some(_), VelocityDescription::Property(name)) => VelocityName::Only(name.clone()),
             _ => VelocityName::Nothing,
         }
     }
 
     /// True when velocities follow from where the vertices are in the next frame.
     pub fn follows_vertices(&self) -> bool {
-        self.pace().is_some() && self.frames().is_some_and(|f| f.velocity == VelocityDescription::Frames)
+        self.pace().is_some() && self.velocities() == &VelocityDescription::Frames
+    }
+
+    fn velocities(&self) -> &VelocityDescription {
+        self.frames().map_or(&VelocityDescription::Auto, |frames| &frames.velocity)
     }
 }
 
