@@ -1,7 +1,7 @@
 //! Keys, a turntable and a lens, seen in pictures.
 
-use floe::optics::medium::MediumId;
-use floe::scene::camera_path::StartMedia;
+use floe::scene::camera_path::StartPlaces;
+use floe::scene::frame::Place;
 use glam::DVec3;
 
 use crate::common::mesh::{cuboid, parallelogram};
@@ -66,7 +66,7 @@ fn a_camera_passes_through_a_surface_while_the_shutter_is_open() {
          eye = [{ frame = 1, eye = [0, 0, -0.3], target = [0.1, 0.2, 9] }, { frame = 2, eye = [0, 0, 0.7], target = [0.1, 0.2, 9] }]\n\
          shutter = 1\nresolution = [8, 8]\n",
     );
-    assert_eq!(scene.frame.start_media, StartMedia::Several);
+    assert_eq!(scene.frame.starts, StartPlaces::Several);
     // The share of the time at which -0.3 + s^2 (3 - 2 s) is below 0.
     let height = |s: f64| s * s * (3.0 - 2.0 * s) - 0.3;
     let (mut low, mut high) = (0.0, 1.0);
@@ -85,8 +85,8 @@ fn a_camera_passes_through_a_surface_while_the_shutter_is_open() {
         "[media.sea]\nior = 1.33\n[[surfaces]]\nmesh = \"sea.ply\"\nfront = \"air\"\nback = \"sea\"\n\
          material = { kind = \"dielectric\" }\n[camera]\neye = [0, 0, 0.1]\ntarget = [0, 3, 0]\naperture = 0.3\n",
     );
-    assert_eq!(above.frame.start_media, StartMedia::Several, "the lens reaches into the sea");
+    assert_eq!(above.frame.starts, StartPlaces::Several, "the lens reaches into the sea");
     let higher = folder.scene("[media.sea]\nior = 1.33\n[[surfaces]]\nmesh = \"sea.ply\"\nfront = \"air\"\nback = \"sea\"\n\
          material = { kind = \"dielectric\" }\n[camera]\neye = [0, 0, 0.2]\ntarget = [0, 3, 0.2]\naperture = 0.3\n");
-    assert_eq!(higher.frame.start_media, StartMedia::One(MediumId(0)));
+    assert_eq!(higher.frame.starts, StartPlaces::One(Place::OPEN_AIR));
 }
