@@ -48,12 +48,15 @@ pub fn discover(base: &Path, pattern: &str) -> Result<Vec<FrameFile>, SequenceEr
     }
 }
 
-/// Finds the numbered pictures of a folder, of one extension, in ascending order.
+/// Finds the numbered pictures of a folder, of one extension, in ascending order; denoised copies are not among them.
 ///
 /// # Errors
 /// Those of [`discover`].
 pub fn discover_pictures(folder: &Path, extension: &str) -> Result<Vec<FrameFile>, SequenceError> {
-    let is_picture = |name: &str| split_extension(name).1.eq_ignore_ascii_case(extension);
+    let is_picture = |name: &str| {
+        let (stem, end) = split_extension(name);
+        end.eq_ignore_ascii_case(extension) && !stem.ends_with(".denoised")
+    };
     numbered(folder, is_picture, format!("pictures (.{extension})"))
 }
 
