@@ -1,8 +1,8 @@
 //! From the pictures of a sequence to something to look at: a movie, or a sheet of small pictures.
 //!
 //! * [`pictures`] finds the pictures of a scene, a folder or a pattern, and shows an EXR as its PNG would.
-//! * [`encode`] lets an installed ffmpeg make a movie of them.
-//! * [`sheet`] puts them all into one picture, with their numbers beneath ([`digits`]).
+//! * [`encode`](mod@encode) lets an installed ffmpeg make a movie of them.
+//! * [`sheet`] puts them all into one picture, with their numbers beneath.
 
 mod digits;
 pub mod encode;

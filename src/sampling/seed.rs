@@ -221,6 +221,14 @@ mod tests {
         assert_ne!(photon(0), photon(1));
     }
 
+    #[test]
+    fn photons_of_each_kind_of_light_are_stratified() {
+        for kind in 0..3 {
+            let photon = |i| SampleStream::of_photon(SEED, 2, kind, 64, i).next4();
+            assert!(is_net(&(0..64).map(photon).collect::<Vec<_>>(), 6), "{kind}");
+        }
+    }
+
     /// Every box of 2^-a x 2^-b with a + b = m holds exactly one of 2^m points.
     fn is_net(points: &[[f32; 4]], m: i32) -> bool {
         (0..=m).all(|a| {

@@ -58,12 +58,15 @@ pub fn is_sequence(base: &Path, pattern: &str) -> bool {
         || join(base, pattern).is_dir()
 }
 
-/// Finds the numbered pictures of a folder, of one extension, in ascending order.
+/// Finds the numbered pictures of a folder, of one extension, in ascending order; denoised copies are not among them.
 ///
 /// # Errors
 /// Those of [`discover`].
 pub fn discover_pictures(folder: &Path, extension: &str) -> Result<Vec<FrameFile>, SequenceError> {
-    let is_picture = |name: &str| split_extension(name).1.eq_ignore_ascii_case(extension);
+    let is_picture = |name: &str| {
+        let (stem, end) = split_extension(name);
+        end.eq_ignore_ascii_case(extension) && !stem.ends_with(".denoised")
+    };
     in_sequence(folder, &candidates(folder, is_picture)?, &format!("pictures (.{extension})"))
 }
 

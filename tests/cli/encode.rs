@@ -83,6 +83,16 @@ fn a_pattern_and_other_kinds_of_movies() {
 }
 
 #[test]
+fn denoised_copies_are_no_frames_unless_they_are_named() {
+    let folder = shots(&[1, 2, 3]);
+    folder.write("shot/frame_0002.denoised.png", folder.read("shot/frame_0001.png"));
+    with_fake(&folder, &["shot"]).ended(0);
+    assert_eq!(text(&folder, "read").lines().count(), 3);
+    with_fake(&folder, &["shot/frame_####.denoised.png"]).ended(0);
+    assert_eq!(text(&folder, "read").lines().count(), 1);
+}
+
+#[test]
 fn a_scene_stands_for_its_pictures_and_an_exr_for_its_png() {
     let folder = boxes(2, "");
     folder.write("bin/ffmpeg", FFMPEG);
