@@ -3,6 +3,9 @@
 //! [`job::Job`] opens a scene file or a folder. [`render()`] goes through its frames, one at a time, all threads on the
 //! tiles of one frame while one more makes the next frame ready, and writes a line into the ledger for each. A bad frame
 //! never takes the others with it when [`RenderOptions::keep_going`] is set.
+//!
+//! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
+//! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
 pub mod accumulation;
 mod ahead;

@@ -7,6 +7,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::command::{boxes, command, floe, pictures};
+use super::numbers::Numbers;
 use super::small::Folder;
 
 /// Checkpoints are so frequent that a run which is killed soon leaves some.
@@ -34,16 +35,6 @@ fn send(child: &Child, signal: &str) {
     let id = child.id().to_string();
     // It may have ended by itself meanwhile.
     let _ = Command::new("sh").args(["-c", "kill -$0 $1 2>/dev/null", signal, &id]).status().unwrap();
-}
-
-/// Numbers that look random, the same in every run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
 }
 
 /// Breaks runs off until one has come to its end, then compares everything with a run that was left alone, and begins

@@ -1,10 +1,12 @@
 //! Pictures that are there already: what they are told by, and that a run which was broken off ends as if it had not been.
 #![allow(clippy::unwrap_used)]
 
+mod accumulation;
 mod command;
 mod fingerprint;
 #[cfg(unix)]
 mod interrupted;
+mod numbers;
 mod pictures;
 mod runs;
 #[path = "../small/mod.rs"]
