@@ -1,7 +1,6 @@
 //! Nine kinds of writer.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Duration;
 
 use floe::driver::watch::{End, Order};
 use floe::sequence::FrameNumber;
@@ -105,13 +104,14 @@ fn text_that_grows_is_waited_for() {
     let folder = Folder::with_scene(&scene("[frames]\npath = \"frames/frame_####.obj\"\n"));
     let obj = "v -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let witness = Witness::default();
-    let options = floe::driver::WatchOptions { quiet: QUIET * 10, ..options(&folder) };
+    let options = floe::driver::WatchOptions { quiet: QUIET * 4, ..options(&folder) };
     std::thread::scope(|scope| {
         let watching = scope.spawn(|| watched(&folder, &options, &witness));
         // Each of the four faces is a whole line, and so each of the prefixes a whole file.
         for (end, _) in obj.match_indices('\n') {
             folder.write("frames/frame_0001.obj", &obj[..=end]);
-            std::thread::sleep(Duration::from_millis(40));
+            // More than the quiet time, less than what an open surface waits for: 20 times that.
+            std::thread::sleep(QUIET * 6);
         }
         folder.write("frames/DONE", "");
         watching.join().unwrap();
