@@ -181,14 +181,6 @@ fn surfaces_and_their_materials() {
 }
 
 #[test]
-fn a_camera_without_a_place_frames_the_first_frame() {
-    let scene = example("automatic camera");
-    assert_eq!(scene.camera.placement, None);
-    assert_eq!((scene.camera.up, scene.camera.resolution), (Vec3::Y, [1920, 1080]));
-    assert!(!scene.output.png);
-}
-
-#[test]
 fn walls_below_a_surface_that_goes_on() {
     let walls = |walls: &str| {
         let text = format!("[domain]\nbox = [[0, 0, 0], [1, 1, 1]]\nwalls = {{ {walls} }}\n");

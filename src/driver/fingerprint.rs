@@ -15,6 +15,7 @@ use std::path::PathBuf;
 use sha2::{Digest, Sha256};
 
 use super::error::RenderError;
+use super::frame_seeds::FrameSeeds;
 use super::job::FrameTask;
 use crate::mesh::{self, VelocityName};
 use crate::scene::FrameError;
@@ -38,6 +39,8 @@ impl fmt::Display for Fingerprint {
 #[derive(Clone, Debug)]
 pub struct Fingerprints {
     common: Sha256,
+    /// Where a frame begins in the sequence of samples follows from what the scene itself says of samples.
+    seeds: FrameSeeds,
 }
 
 impl Fingerprints {
@@ -47,7 +50,8 @@ impl Fingerprints {
         add(&mut common, env!("CARGO_PKG_VERSION").as_bytes());
         add(&mut common, what_counts(&world.description, settings).as_bytes());
         add(&mut common, world.contents.as_flattened());
-        Self { common }
+        let seeds = FrameSeeds::new(&world.description.render, settings.seed, settings.samples);
+        Self { common, seeds }
     }
 
     /// Of a frame whose own meshes, and the other files that only it is made of, have these contents.
@@ -59,6 +63,7 @@ impl Fingerprints {
     ) -> Fingerprint {
         let mut hasher = self.common.clone();
         add(&mut hasher, &number.millionths().to_le_bytes());
+        add(&mut hasher, format!("{:?}", self.seeds.of_frame(number).ok()).as_bytes());
         add(&mut hasher, meshes.as_flattened());
         add(&mut hasher, others.as_flattened());
         let mut bits = [0; 16];
@@ -86,8 +91,7 @@ fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String
     aovs.sort_unstable();
     aovs.dedup();
     counts.output = OutputDescription { path: None, png: false, exposure: 0.0, denoise: false, aovs };
-    // Where in the sequence of samples a frame begins follows from what the scene says of samples.
-    format!("{counts:?} {}", scene.render.samples)
+    format!("{counts:?}")
 }
 
 fn hexadecimal(bytes: &[u8]) -> String {

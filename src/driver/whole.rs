@@ -75,7 +75,7 @@ fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Re
     let is_text = place(b"format ascii").or(place(b"\nASCII")).is_some();
     let cut = is_text && !bytes.ends_with(b"\n");
     let vertices_last = place(b"element vertex") > place(b"element face");
-    let last_is_zero = vertices_last && mesh.positions.last() == Some(&DVec3::ZERO);
+    let last_is_zero = zeros > 0 && vertices_last && mesh.positions.last() == Some(&DVec3::ZERO);
     let doubt = (zeros >= ZERO_TAIL || last_is_zero).then(|| format!("{zeros} zeros at its end"));
     let proof = match (&doubt, zeros > 0 || cut) {
         (Some(_), _) => Proof::Doubtful,
@@ -134,13 +134,15 @@ fn has_unused_corners(bytes: &[u8]) -> bool {
         }
         for corner in words.by_ref().take(4) {
             let index = std::str::from_utf8(corner).ok().and_then(|text| text.parse::<usize>().ok());
-            used.extend(index);
+            let index = index.unwrap_or_default();
+            if index >= used.len() {
+                used.resize(index + 1, false);
+            }
+            used[index] = true;
         }
         words.next();
     }
-    used.sort_unstable();
-    used.dedup();
-    used.len() < vertices
+    used.iter().filter(|is_used| **is_used).count() < vertices
 }
 
 fn malformed(path: &Path, problem: &str) -> MeshError {

@@ -83,8 +83,7 @@ impl Format {
 /// # Errors
 /// [`MeshError`] when the file cannot be read, its name promises no known format, or its contents are wrong.
 pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
-    let bytes = fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })?;
-    parse(&bytes, &VelocityName::Nothing, path)
+    read_with(path, &VelocityName::Nothing)
 }
 
 /// Reads a mesh from a file with velocities, where it has them or where a file beside it does.
@@ -94,7 +93,8 @@ pub fn read(path: &Path) -> Result<RawMesh, MeshError> {
 pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
     let bytes =
         |path: &Path| fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source });
-    let mut mesh = parse(&bytes(path)?, velocity, path)?;
+    let format = promised(path)?;
+    let mut mesh = read_bytes(&bytes(path)?, format, velocity, path)?;
     if let Some(beside) = velocities_beside(path, velocity) {
         add_velocities(&mut mesh, &bytes(&beside)?, &beside)?;
     }
@@ -106,15 +106,18 @@ pub fn read_with(path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshEr
 /// # Errors
 /// [`MeshError`] when the file's name promises no known format, or the contents are wrong.
 pub fn parse(bytes: &[u8], velocity: &VelocityName, path: &Path) -> Result<RawMesh, MeshError> {
-    let format = Format::of(path).ok_or_else(|| {
+    read_bytes(bytes, promised(path)?, velocity, path)
+}
+
+fn promised(path: &Path) -> Result<Format, MeshError> {
+    Format::of(path).ok_or_else(|| {
         Fault::unsupported(
             Place::File,
             "the file name promises no known mesh format",
             "the known ones end with .ply, .obj, .dsc, .vtk, .vtp, .stl or .bobj, each also with .gz behind it",
         )
         .in_file(path)
-    })?;
-    read_bytes(bytes, format, velocity, path)
+    })
 }
 
 /// The file beside a mesh that has its velocities, if there is one and it is asked for.

@@ -4,7 +4,7 @@ use floe::driver::RenderOptions;
 use floe::mesh::RawMesh;
 use glam::{DVec3, Vec3};
 
-use crate::small::{Folder, cuboid, joined, labelled, ply, scene};
+use crate::small::{Folder, cuboid, joined, labelled, ply, scene, without_marks};
 
 const CAMERA: &str = "[camera]\neye = [{ frame = 0, eye = [0.4, -4, 0.9] }, { frame = 2, eye = [-0.6, -3.8, 1.2] }]\n\
                       target = [0, 0, 0]\nvertical_fov = 40\nresolution = [32, 18]\nshutter = 0.5\naperture = 0.1\n";
@@ -90,11 +90,11 @@ fn velocities_follow_from_the_next_frame_where_its_vertices_are_the_same() {
     assert!(told[1].contains("the next frame has other triangles; nothing in it moves"), "{told:?}");
     assert!(told[2].contains("jump from their neighbours"), "{told:?}");
     assert!(told[3].contains("there is no next frame"), "{told:?}");
-    let followed = folder.read("out/frame_0000.exr");
+    let followed = without_marks(folder.read("out/frame_0000.exr"));
     let folder = Folder::with_scene(&scene(OPEN));
     folder.write("frames/frame_0000.ply", moving(&body(DVec3::ZERO), (way * 24.0).as_vec3()));
     folder.render(RenderOptions::default());
-    assert_eq!(folder.read("out/frame_0000.exr"), followed);
+    assert!(without_marks(folder.read("out/frame_0000.exr")) == followed);
 }
 
 #[test]
@@ -105,5 +105,6 @@ fn files_without_velocities_are_told_and_rendered() {
     let silent = Folder::with_scene(&scene(&format!("{}{OPEN}", FRAMES.replace("\"frames\"", "\"none\""))));
     silent.frame(0, &body(DVec3::ZERO));
     assert_eq!(warnings(&silent), [""]);
-    assert_eq!(silent.read("out/frame_0000.exr"), folder.read("out/frame_0000.exr"));
+    let pictures = [&silent, &folder].map(|f| without_marks(f.read("out/frame_0000.exr")));
+    assert!(pictures[0] == pictures[1]);
 }

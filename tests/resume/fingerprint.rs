@@ -96,6 +96,8 @@ fn what_changes_no_pixel_does_not_change_the_fingerprint() {
 #[test]
 fn overrides_count_as_if_the_scene_said_so() {
     let folder = folder();
+    // In one sequence of samples, where a frame begins follows from what the scene itself says.
+    edit(&folder, "samples = 4", "seed_mode = \"frame\"\nsamples = 4");
     let overridden = RenderOptions { samples: Some(9), seed: Some(3), ..RenderOptions::default() };
     let before = identity(&folder, 1, &overridden);
     assert_ne!(before.fingerprint, identity(&folder, 1, &RenderOptions::default()).fingerprint);

@@ -1,8 +1,17 @@
 //! `[camera]`: keys, the turntable, shutter and lens.
 
 use floe::scene::description::FieldOfView;
+use glam::Vec3;
 
 use crate::{Wrong, assert_wrong, example};
+
+#[test]
+fn a_camera_without_a_place_frames_the_first_frame() {
+    let scene = example("automatic camera");
+    assert_eq!(scene.camera.placement, None);
+    assert_eq!((scene.camera.up, scene.camera.resolution), (Vec3::Y, [1920, 1080]));
+    assert!(!scene.output.png);
+}
 
 #[test]
 fn a_camera_moves_from_key_to_key() {

@@ -1,7 +1,6 @@
 //! Nine kinds of writer.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Duration;
 
 use floe::driver::watch::{End, Order};
 use floe::sequence::FrameNumber;
@@ -72,23 +71,31 @@ fn all_at_once() {
     assert_eq!(failed.iter().filter(|(frame, _)| *frame == CUT.to_string()).count(), 1, "{failed:?}");
 }
 
-/// Every frame is previewed before it is finished, and nothing is finished while one waits for its preview.
+/// Every frame is previewed before it is finished, and nothing is finished while one waits for its preview. Whatever the
+/// order, `latest.png` is the newest frame.
 #[test]
 fn previews_come_first() {
-    let folder = Folder::with_scene(&scene(""));
-    for number in 0..4 {
-        folder.write(&format!("frames/frame_{number:04}.ply"), contents(number));
+    for order in [Order::Oldest, Order::Newest] {
+        let folder = Folder::with_scene(&scene(""));
+        for number in 0..4 {
+            folder.write(&format!("frames/frame_{number:04}.ply"), contents(number));
+        }
+        folder.write("frames/DONE", "");
+        let witness = Witness::default();
+        watched(&folder, &floe::driver::WatchOptions { order, ..options(&folder) }, &witness);
+        let drawn = witness.drawn.lock().unwrap().clone();
+        let found: Vec<String> = drawn.iter().map(|(frame, preview)| format!("{frame}{preview}")).collect();
+        let mut wanted = ["0true", "1true", "2true", "3true", "0false", "1false", "2false", "3false"];
+        if order == Order::Newest {
+            wanted[..4].reverse();
+            wanted[4..].reverse();
+        }
+        assert_eq!(found, wanted);
+        assert!(folder.read("out/latest.png") == folder.read("out/frame_0003.png"), "{order:?}");
+        // The ledger has both, and the page draws its curve of them.
+        let ledger = folder.ledger("out/ledger.jsonl");
+        assert_eq!(ledger.iter().filter(|line| line["status"] == "preview").count(), 4);
     }
-    folder.write("frames/DONE", "");
-    let witness = Witness::default();
-    watched(&folder, &options(&folder), &witness);
-    let drawn = witness.drawn.lock().unwrap().clone();
-    let order: Vec<String> = drawn.iter().map(|(frame, preview)| format!("{frame}{preview}")).collect();
-    let wanted = ["0true", "1true", "2true", "3true", "0false", "1false", "2false", "3false"];
-    assert_eq!(order, wanted);
-    // The ledger has both, and the page draws its curve of them.
-    let ledger = folder.ledger("out/ledger.jsonl");
-    assert_eq!(ledger.iter().filter(|line| line["status"] == "preview").count(), 4);
 }
 
 /// Text formats do not say how long they are: no prefix that could be one is taken before the longer quiet.
@@ -97,13 +104,14 @@ fn text_that_grows_is_waited_for() {
     let folder = Folder::with_scene(&scene("[frames]\npath = \"frames/frame_####.obj\"\n"));
     let obj = "v -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let witness = Witness::default();
-    let options = floe::driver::WatchOptions { quiet: QUIET * 10, ..options(&folder) };
+    let options = floe::driver::WatchOptions { quiet: QUIET * 4, ..options(&folder) };
     std::thread::scope(|scope| {
         let watching = scope.spawn(|| watched(&folder, &options, &witness));
         // Each of the four faces is a whole line, and so each of the prefixes a whole file.
         for (end, _) in obj.match_indices('\n') {
             folder.write("frames/frame_0001.obj", &obj[..=end]);
-            std::thread::sleep(Duration::from_millis(40));
+            // More than the quiet time, less than what an open surface waits for: 20 times that.
+            std::thread::sleep(QUIET * 6);
         }
         folder.write("frames/DONE", "");
         watching.join().unwrap();

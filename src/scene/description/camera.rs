@@ -1,14 +1,77 @@
-//! Reads `[camera]`.
+//! `[camera]`: where it is over time, and what it sees.
 
 use std::mem;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
+use super::Axis;
 use super::allowed::Allowed;
 use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
-use super::{Axis, CameraDescription, CameraKey, FieldOfView, Placement, TurntableDescription};
+
+/// `[camera]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraDescription {
+    /// Where the camera is, at the first key if there are any; `None` frames the first frame.
+    pub placement: Option<Placement>,
+    /// Where the camera is in which frame, in order; empty where it is the same in all.
+    pub keys: Vec<CameraKey>,
+    /// Turns the camera round its target.
+    pub turntable: Option<TurntableDescription>,
+    /// The direction that is up in the picture, a unit vector (`frames.up`).
+    pub up: Vec3,
+    /// Field of view (40 degrees vertically).
+    pub fov: FieldOfView,
+    /// How long the shutter is open, as a part of a frame; it opens at the time of the frame (0).
+    pub shutter: f32,
+    /// Diameter of the lens in metres (0, a pinhole).
+    pub aperture: f32,
+    /// Depth that is in focus, in metres; `None` is that of the target.
+    pub focus_distance: Option<f64>,
+    /// Width and height in pixels (640 x 360).
+    pub resolution: [u32; 2],
+}
+
+/// Where the camera is in one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraKey {
+    /// The frame's number.
+    pub frame: f64,
+    /// Where the camera is.
+    pub placement: Placement,
+    /// Field of view; of the same kind in all keys.
+    pub fov: FieldOfView,
+    /// Depth that is in focus, in metres; `None` is that of the target.
+    pub focus_distance: Option<f64>,
+}
+
+/// `camera.turntable`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableDescription {
+    /// Angle by which the camera goes on around its target in each frame, anticlockwise seen from above.
+    pub degrees_per_frame: f64,
+    /// The frame in which it is where the scene says (1).
+    pub frame: f64,
+}
+
+/// Where the camera is and what it looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Where the camera is, in metres.
+    pub eye: DVec3,
+    /// What it looks at, in metres; not the eye, and not straight along the camera's up.
+    pub target: DVec3,
+}
+
+/// Full angle of view in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FieldOfView {
+    /// Across the height.
+    Vertical(f32),
+    /// Across the width.
+    Horizontal(f32),
+}
 
 /// Sine of the least angle between the view and up. Below it, which way is up depends on rounding.
 const PARALLEL: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! Reads `[[meshes]]`: several meshes a frame, which may overlap.
+//! `[[meshes]]`: several meshes a frame, which may overlap.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +8,34 @@ use super::document::Table;
 use super::error::SceneError;
 use super::media::existing_medium;
 use super::value::Value;
-use super::{FramesDescription, MeshContents, MeshDescription, frames, regions, surfaces};
+use super::{FramesDescription, NormalsDescription, frames, regions, surfaces};
 use crate::mesh::Region;
+
+/// `[[meshes]]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshDescription {
+    /// As that of `[frames]`, or the one file that is the same in every frame.
+    pub path: String,
+    /// What is within.
+    pub contents: MeshContents,
+    /// The mesh of the greater one is where meshes overlap, the first in the file among equal ones (0).
+    pub priority: i32,
+    /// Where shading normals come from (those of `[frames]`).
+    pub normals: NormalsDescription,
+    /// Metres per unit of the file (that of `[frames]`).
+    pub scale: f64,
+    /// Added after scaling, in metres.
+    pub translate: DVec3,
+}
+
+/// What is within one of the `[[meshes]]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MeshContents {
+    /// One medium: the mesh is closed and carries no labels.
+    Inside(String),
+    /// Medium names by label, those of `[regions]` unless the mesh has its own.
+    Regions(BTreeMap<Region, String>),
+}
 
 /// What the meshes take from the rest of the scene.
 pub(super) struct Around<'a, T> {

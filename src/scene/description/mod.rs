@@ -31,10 +31,12 @@ mod sun;
 mod surfaces;
 mod value;
 
+pub use camera::{CameraDescription, CameraKey, FieldOfView, Placement, TurntableDescription};
 pub use error::{Place, SceneError};
 pub use examples::{EXAMPLES, Example};
 pub use framed::default_scene;
 pub use framing::automatic_placement;
+pub use meshes::{MeshContents, MeshDescription};
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -94,32 +96,6 @@ pub struct FramesDescription {
     pub velocity: VelocityDescription,
     /// The label inside closed meshes that carry no labels (1).
     pub inside: Region,
-}
-
-/// `[[meshes]]`
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeshDescription {
-    /// As that of `[frames]`, or the one file that is the same in every frame.
-    pub path: String,
-    /// What is within.
-    pub contents: MeshContents,
-    /// The mesh of the greater one is where meshes overlap, the first in the file among equal ones (0).
-    pub priority: i32,
-    /// Where shading normals come from (those of `[frames]`).
-    pub normals: NormalsDescription,
-    /// Metres per unit of the file (that of `[frames]`).
-    pub scale: f64,
-    /// Added after scaling, in metres.
-    pub translate: DVec3,
-}
-
-/// What is within one of the `[[meshes]]`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum MeshContents {
-    /// One medium: the mesh is closed and carries no labels.
-    Inside(String),
-    /// Medium names by label, those of `[regions]` unless the mesh has its own.
-    Regions(BTreeMap<Region, String>),
 }
 
 /// Where the velocities of vertices come from, which motion blur needs.
@@ -335,69 +311,6 @@ pub enum SkyDescription {
         /// The file, relative to the scene file.
         image: String,
     },
-}
-
-/// `[camera]`
-#[derive(Clone, Debug, PartialEq)]
-pub struct CameraDescription {
-    /// Where the camera is, at the first key if there are any; `None` frames the first frame.
-    pub placement: Option<Placement>,
-    /// Where the camera is in which frame, in order; empty where it is the same in all.
-    pub keys: Vec<CameraKey>,
-    /// Turns the camera round its target.
-    pub turntable: Option<TurntableDescription>,
-    /// The direction that is up in the picture, a unit vector (`frames.up`).
-    pub up: Vec3,
-    /// Field of view (40 degrees vertically).
-    pub fov: FieldOfView,
-    /// How long the shutter is open, as a part of a frame; it opens at the time of the frame (0).
-    pub shutter: f32,
-    /// Diameter of the lens in metres (0, a pinhole).
-    pub aperture: f32,
-    /// Depth that is in focus, in metres; `None` is that of the target.
-    pub focus_distance: Option<f64>,
-    /// Width and height in pixels (640 x 360).
-    pub resolution: [u32; 2],
-}
-
-/// Where the camera is in one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraKey {
-    /// The frame's number.
-    pub frame: f64,
-    /// Where the camera is.
-    pub placement: Placement,
-    /// Field of view; of the same kind in all keys.
-    pub fov: FieldOfView,
-    /// Depth that is in focus, in metres; `None` is that of the target.
-    pub focus_distance: Option<f64>,
-}
-
-/// `camera.turntable`
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurntableDescription {
-    /// Angle by which the camera goes on around its target in each frame, anticlockwise seen from above.
-    pub degrees_per_frame: f64,
-    /// The frame in which it is where the scene says (1).
-    pub frame: f64,
-}
-
-/// Where the camera is and what it looks at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// Where the camera is, in metres.
-    pub eye: DVec3,
-    /// What it looks at, in metres; not the eye, and not straight along the camera's up.
-    pub target: DVec3,
-}
-
-/// Full angle of view in degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FieldOfView {
-    /// Across the height.
-    Vertical(f32),
-    /// Across the width.
-    Horizontal(f32),
 }
 
 /// `[render]`
