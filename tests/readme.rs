@@ -8,11 +8,11 @@ use floe::scene::description::SceneDescription;
 const README: &str = include_str!("../README.md");
 
 #[test]
-fn the_scene_file_of_the_readme_parses() {
-    let text = README.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
-    let text = text.unwrap_or_else(|| panic!("the README has no scene file"));
-    let scene = SceneDescription::parse(text, Path::new("README.md"));
-    assert!(scene.is_ok(), "{}", scene.unwrap_err());
+fn the_scene_files_of_the_readme_parse() {
+    let texts = README.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let scenes: Vec<_> = texts.map(|text| SceneDescription::parse(text, Path::new("README.md"))).collect();
+    assert!(scenes.len() >= 2, "the README has scene files");
+    scenes.into_iter().for_each(|scene| assert!(scene.is_ok(), "{}", scene.unwrap_err()));
 }
 
 /// Of media that the first scene file of the README has, or that are left to the reader.

@@ -131,14 +131,19 @@ impl Leaf {
         [vertex(0), vertex(1), vertex(2)]
     }
 
+    /// The coordinates of the vertices along an axis.
+    #[inline(always)]
+    fn along<L: Lanes>(&self, change: impl Change<Self>, axis: usize) -> L {
+        change.lanes(self, |leaf| &leaf.vertices[axis])
+    }
+
     /// The triangles that the ray may meet; none that it does meet is left out.
     #[inline(always)]
     pub fn candidates<L: Lanes>(&self, change: impl Change<Self>, ray: &LeafRay<L>) -> Option<Candidates> {
-        let along = |axis: usize| -> L { change.lanes(self, |leaf| &leaf.vertices[axis]) };
         let [kx, ky, kz] = ray.axes;
-        let z = along(kz).sub(ray.origin[2]);
-        let x = along(kx).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
-        let y = along(ky).sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
+        let z = self.along::<L>(change, kz).sub(ray.origin[2]);
+        let x = self.along::<L>(change, kx).sub(ray.origin[0]).sub(z.mul(ray.shear[0]));
+        let y = self.along::<L>(change, ky).sub(ray.origin[1]).sub(z.mul(ray.shear[1]));
         let [a, b, c] = &self.corners;
         let (ax, bx, cx) = (x.pick(a), x.pick(b), x.pick(c));
         let (ay, by, cy) = (y.pick(a), y.pick(b), y.pick(c));

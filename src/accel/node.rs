@@ -63,30 +63,42 @@ impl Node {
         Bounds { min: corner(0), max: corner(1) }
     }
 
+    // Not a closure: those are compiled without wide registers where they are not inlined.
+    #[inline(always)]
+    fn distance<L: Lanes>(&self, change: impl Change<Self>, ray: &NodeRay<L>, side: usize, a: usize) -> L {
+        let planes: L = change.lanes(self, |node| &node.planes[a][ray.signs[a] ^ side]);
+        planes.scaled(ray.inverse[a], ray.offsets[a][side])
+    }
+
     /// Where the ray enters the boxes, and a bit for each that it enters before or at `t_max`.
     #[inline(always)]
     pub fn enter<L: Lanes>(&self, change: impl Change<Self>, ray: &NodeRay<L>, t_max: f32) -> (L, u32) {
-        let distance = |side: usize, a: usize| {
-            let planes: L = change.lanes(self, |node| &node.planes[a][ray.signs[a] ^ side]);
-            planes.scaled(ray.inverse[a], ray.offsets[a][side])
-        };
-        let near = distance(0, 0).max(distance(0, 1)).max(distance(0, 2).max(L::splat(0.0)));
-        let far = distance(1, 0).min(distance(1, 1)).min(distance(1, 2).min(L::splat(t_max)));
+        let near = self
+            .distance(change, ray, 0, 0)
+            .max(self.distance(change, ray, 0, 1))
+            .max(self.distance(change, ray, 0, 2).max(L::splat(0.0)));
+        let far = self
+            .distance(change, ray, 1, 0)
+            .min(self.distance(change, ray, 1, 1))
+            .min(self.distance(change, ray, 1, 2).min(L::splat(t_max)));
         (near, near.at_most(far))
     }
 }
 
 impl Node {
+    #[inline(always)]
+    fn squared_along<L: Lanes>(&self, change: impl Change<Self>, point: &[L; 3], a: usize) -> L {
+        let min: L = change.lanes(self, |node| &node.planes[a][0]);
+        let max: L = change.lanes(self, |node| &node.planes[a][1]);
+        let outside = min.sub(point[a]).max(point[a].sub(max)).max(L::splat(0.0));
+        outside.mul(outside)
+    }
+
     /// Squares of the distances from a point to the boxes.
     #[inline(always)]
     pub fn squared_distances<L: Lanes>(&self, change: impl Change<Self>, point: &[L; 3]) -> L {
-        let along = |a: usize| {
-            let min: L = change.lanes(self, |node| &node.planes[a][0]);
-            let max: L = change.lanes(self, |node| &node.planes[a][1]);
-            let outside = min.sub(point[a]).max(point[a].sub(max)).max(L::splat(0.0));
-            outside.mul(outside)
-        };
-        along(0).add(along(1)).add(along(2))
+        let xy = self.squared_along(change, point, 0).add(self.squared_along(change, point, 1));
+        xy.add(self.squared_along(change, point, 2))
     }
 }
 

@@ -19,7 +19,8 @@ fn lights(picture: &Rendered) -> Vec<(f64, f64, f64)> {
 /// The blur of a point at depth z is a disc of diameter aperture |z - f| / f in the plane at z: with n pixels a metre there,
 /// and light spread evenly over it, the mean square of the distance from its centre is (n diameter)^2 / 8 pixels^2.
 ///
-/// A small lamp of edge e adds (n e)^2 / 6 and pixels 1 / 6. The squared distance in an even disc has a standard deviation of
+/// A small lamp of edge e adds (n e)^2 / 6, and that light is told by whole pixels 1 / 6 (Sheppard's correction, where the
+/// disc has many). The squared distance in an even disc has a standard deviation of
 /// 1 / sqrt(3) of its mean; 5 standard errors of as many samples as see the lamp.
 #[test]
 fn the_circle_of_confusion_is_that_of_a_thin_lens() {
@@ -29,7 +30,7 @@ fn the_circle_of_confusion_is_that_of_a_thin_lens() {
     let lamp = parallelogram(DVec3::new(-half, -half, 0.0), DVec3::X * edge, DVec3::Y * edge);
     let folder = SceneFolder::new().mesh("lamp.ply", &lamp);
     let per_metre = size / (2.0 * distance * (0.5 * fov).to_radians().tan());
-    for (aperture, focus) in [(0.4, 3.5), (0.3, 8.0), (0.2, 2.0)] {
+    for (aperture, focus) in [(0.8, 3.5), (0.8, 8.0), (0.2, 2.0)] {
         let scene = folder.scene(&format!(
             "[[surfaces]]\nmesh = \"lamp.ply\"\nmaterial = {{ kind = \"emitter\", radiance = 1 }}\n[camera]\n\
              eye = [0, 0, {distance}]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nvertical_fov = {fov}\naperture = {aperture}\n\
