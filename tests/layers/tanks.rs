@@ -120,7 +120,7 @@ fn an_eye_within_the_water_or_where_both_are() {
 /// Faces on each other are crossed at once, so that paths are the same to the last random number. A film of air between
 /// them would reflect all that comes obliquely out of the glass. Of the water's face and the glass's, either may be found
 /// first, and their points differ by a few roundings: a path of some meetings may take another turn at an edge, so one
-/// pixel in a hundred may differ.
+/// pixel in a hundred may differ. A photon that does so changes all pixels near it: with seeds 1 to 8, 0 to 44 of 768.
 #[test]
 fn faces_on_each_other_are_one() {
     let within = "[0.5, -0.2, 0.5]";
@@ -129,21 +129,9 @@ fn faces_on_each_other_are_one() {
         let pixels = expected.image.pixels.iter().zip(&found.image.pixels);
         let differ = pixels.filter(|(a, b)| (a.rgb - b.rgb).abs().max_element() > 1e-4 * a.rgb.max_element());
         let (differ, of) = (differ.count(), found.image.pixels.len());
-        if media == MILKY {
-            for seed in 2..8 {
-                let [a, b] = scenes(0.0, media, eye).map(|scene| scene.render(16, seed));
-                let n = a
-                    .image
-                    .pixels
-                    .iter()
-                    .zip(&b.image.pixels)
-                    .filter(|(a, b)| (a.rgb - b.rgb).abs().max_element() > 1e-4 * a.rgb.max_element())
-                    .count();
-                println!("seed {seed}: {n}");
-            }
-        }
         println!("{eye}: {differ} of {of} pixels differ");
-        assert!(differ * 100 <= of, "{differ} of {of} pixels differ");
+        let most = if media == MILKY { of / 10 } else { of / 100 };
+        assert!(differ <= most, "{differ} of {of} pixels differ");
         assert_eq!(found.counters.label_mismatches, 0);
     }
 }
