@@ -7,22 +7,18 @@ use floe::scene::description::SceneDescription;
 
 const README: &str = include_str!("../README.md");
 
+/// The texts of scene files, and what a part of one needs besides to be whole.
 #[test]
 fn the_scene_files_of_the_readme_parse() {
     let texts = README.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
-    let scenes: Vec<_> = texts.map(|text| SceneDescription::parse(text, Path::new("README.md"))).collect();
-    assert!(scenes.len() >= 2, "the README has scene files");
-    scenes.into_iter().for_each(|scene| assert!(scene.is_ok(), "{}", scene.unwrap_err()));
-}
-
-/// Of media that the first scene file of the README has, or that are left to the reader.
-#[test]
-fn the_meshes_of_the_readme_parse() {
-    let text = README.split("```toml\n").nth(2).and_then(|rest| rest.split("```").next());
     let media = "[media.sea]\n[media.ice]\n[media.snow]\n[media.glass]\n";
-    let text = media.to_owned() + text.unwrap_or_else(|| panic!("the README has no meshes"));
-    let scene = SceneDescription::parse(&text, Path::new("README.md"));
-    assert_eq!(scene.unwrap_or_else(|e| panic!("{e}")).meshes.len(), 3);
+    let whole =
+        texts.map(|text| if text.contains("[[meshes]]") { format!("{text}\n{media}") } else { text.into() });
+    let scenes: Vec<SceneDescription> = whole
+        .map(|text| SceneDescription::parse(&text, Path::new("README.md")).unwrap_or_else(|e| panic!("{e}")))
+        .collect();
+    assert_eq!(scenes.iter().map(|scene| scene.meshes.len()).collect::<Vec<_>>(), [0, 0, 3]);
+    assert_eq!(scenes[1].camera.keys.len(), 2);
 }
 
 #[test]

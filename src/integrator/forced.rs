@@ -27,7 +27,7 @@ impl Sample<'_> {
         let mut scattered = *branch;
         scattered.stream = branch.stream.fork(2);
         // It waits for its turn, so no flight may be drawn for it here; the other has a surface before it.
-        self.scratch.around = Around::NOTHING;
+        let outward = std::mem::replace(&mut self.scratch.around, Around::NOTHING).outward;
         let u = scattered.stream.next4();
         let flight = medium.free_flight_within(branch.throughput, length, u[0]);
         let distance = match VARIED {
@@ -48,6 +48,7 @@ impl Sample<'_> {
                 self.first = first;
             }
         }
+        self.scratch.around = Around { outward, ..Around::NOTHING };
         branch.throughput *= medium.transmittance(length);
         branch.share *= flight.probability_beyond(&medium, length);
         found.map_or(Event::Nothing, Event::Surface)

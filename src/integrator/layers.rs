@@ -9,9 +9,10 @@
 //! along the ray, which rounding sets apart the more the farther it comes:
 //!
 //! ```text
-//! |(q - p) . n_p|  and  |(q - p) . n_q|  <=  COINCIDENT max(|coordinates of both triangles|)
+//! |(q - p) . n_p|  and  |(q - p) . n_q|  <=  COINCIDENT max over both triangles of sum_axes |n_a| max(|corners_a|)
 //! ```
-//! for hits p and q with unit normals n. A ray that leaves one of such faces is past, or not yet past, all of them: others
+//! for hits p and q with unit normals n. Of one mesh only faces that share a corner are, so that no plate is so thin that
+//! its two sides are crossed as one. A ray that leaves one of such faces is past, or not yet past, all of them: others
 //! that it meets from the wrong side within twice that are those.
 
 use glam::{DVec3, Vec3};
@@ -62,6 +63,9 @@ struct Face<'f> {
     normal: DVec3,
     /// When it is there, in frames.
     time: f32,
+    /// Its farthest coordinate along the normal, which bounds the rounding of the plane: however far a level sea goes on,
+    /// its height is exact.
+    height: f64,
     /// Its farthest coordinate.
     size: f64,
 }
@@ -72,8 +76,9 @@ impl<'f> Face<'f> {
         let Surface::Layer(layer) = frame.surface(triangle) else { return None };
         let v = frame.geometry.vertices_at(triangle, time).map(|p| p.as_dvec3());
         let normal = (v[1] - v[0]).cross(v[2] - v[0]).normalize_or_zero();
-        let size = v.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        Some(Self { layer, from_front, triangle, point, normal, time, size })
+        let farthest = v.iter().map(|p| p.abs()).fold(DVec3::ZERO, DVec3::max);
+        let (height, size) = (farthest.dot(normal.abs()), farthest.max_element());
+        Some(Self { layer, from_front, triangle, point, normal, time, height, size })
     }
 
     fn at(frame: &'f Frame, hit: &Hit, time: f32) -> Option<Self> {
@@ -86,13 +91,13 @@ impl<'f> Face<'f> {
     fn coincides(&self, other: &Self) -> bool {
         let apart = other.point - self.point;
         let height = apart.dot(self.normal).abs().max(apart.dot(other.normal).abs());
-        height <= f64::from(COINCIDENT) * self.size.max(other.size)
+        height <= f64::from(COINCIDENT) * self.height.max(other.height)
     }
 
     /// True when a point lies on the plane, but for what puts faces on each other twice over.
     fn holds(&self, point: Vec3) -> bool {
         let height = (point.as_dvec3() - self.point).dot(self.normal).abs();
-        height <= 2.0 * f64::from(COINCIDENT) * self.size
+        height <= 2.0 * f64::from(COINCIDENT) * self.height
     }
 
     /// How much farther along a ray than this face, at distance `t`, faces may be met that coincide with it.
@@ -103,6 +108,11 @@ impl<'f> Face<'f> {
     }
 }
 
+fn shares_corner(frame: &Frame, a: &Face, b: &Face) -> bool {
+    let [a, b] = [a, b].map(|face| frame.geometry.triangles[face.triangle as usize]);
+    a.iter().any(|corner| b.contains(corner))
+}
+
 /// What a ray in `insides` crosses at a face, together with those of `others` that coincide with it.
 fn cross(frame: &Frame, first: &Face, others: &[Hit], insides: Insides) -> Crossing {
     let before = first.layer.before(insides, first.from_front);
@@ -110,7 +120,8 @@ fn cross(frame: &Frame, first: &Face, others: &[Hit], insides: Insides) -> Cross
     let (mut mesh, mut stronger) = (first.layer.mesh, None);
     let coinciding = |hit: &Hit| {
         let face = Face::at(frame, hit, first.time).filter(|face| face.triangle != first.triangle);
-        face.filter(|face| face.coincides(first)).map(|face| (*hit, face.layer))
+        let may_join = |face: &Face| face.layer.mesh != first.layer.mesh || shares_corner(frame, face, first);
+        face.filter(|face| may_join(face) && face.coincides(first)).map(|face| (*hit, face.layer))
     };
     let mut rest: Vec<(Hit, &Layer)> = others.iter().filter_map(coinciding).collect();
     // Each time the first one that what the ray is in lets it meet: where several of one mesh meet at an edge, rounding

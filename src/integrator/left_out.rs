@@ -77,7 +77,7 @@ impl Integrator {
                 Needs { scattering: false, direct_light: needs.direct_light && needs.diffuse, ..*needs }
             }
             Self::Path(_) | Self::Photon(_) => *needs,
-            Self::AmbientOcclusion(_) => Needs::default(),
+            Self::AmbientOcclusion(_) => Needs { motion: needs.motion, lens: needs.lens, ..Needs::default() },
         }
     }
 }

@@ -427,7 +427,7 @@ impl Branch {
     pub(super) fn goes_on(&mut self, u: f32) -> Fate {
         self.interactions += 1;
         let is_early = self.bounces < LATE_ROULETTE && self.interactions < LONG_WALK;
-        if is_early && self.throughput.max_element() >= UNTOUCHED * (self.index_factor * self.share) {
+        if is_early && self.throughput.max_element() > UNTOUCHED * (self.index_factor * self.share) {
             return Fate::GoesOn;
         }
         let kept = self.throughput.max_element() / (self.index_factor * self.share);

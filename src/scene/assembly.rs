@@ -20,7 +20,7 @@ use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
 use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
-use crate::mesh::{self, Interface, RawMesh, Region, VelocityName, normals};
+use crate::mesh::{self, Interface, RawMesh, Region, normals};
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::FrameNumber;
 use crate::spectrum::{Role, Spectrum, Wavelengths};
@@ -97,7 +97,10 @@ impl World {
         let mut moving = self.meshes(false);
         for FrameMesh { path, mesh } in meshes {
             match moving.next() {
-                Some((which, _)) => assembly.parts.add_body(self, which, mesh, &path)?,
+                Some((which, _)) => {
+                    assembly.parts.miss_velocities(self, &mesh, &path);
+                    assembly.parts.add_body(self, which, mesh, &path)?;
+                }
                 None => assembly.add_frame(mesh, &path)?,
             }
         }
@@ -140,11 +143,7 @@ impl<'a> Assembly<'a> {
     fn add_frame(&mut self, mesh: RawMesh, path: &Path) -> Result<(), FrameError> {
         let Some(frames) = self.world.frames() else { return Ok(()) };
         self.labelled = mesh.interfaces.is_some();
-        let is_asked = self.world.velocity_name() != VelocityName::Nothing;
-        if is_asked && mesh.velocities.is_none() {
-            self.parts
-                .warn(path, ["the file has no velocities: nothing in it moves while the shutter is open"]);
-        }
+        self.parts.miss_velocities(self.world, &mesh, path);
         let (mut mesh, warnings) = mesh::prepare(mesh, frames.inside, path)?;
         self.parts.warn(path, warnings);
         self.count_interfaces(&mesh);

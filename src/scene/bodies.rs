@@ -73,7 +73,8 @@ impl Parts {
         let corners = |triangle| moments.map(|time| self.geometry.vertices_at(triangle, time)).concat();
         let bounds = Bounds::of_points(own.flat_map(corners));
         // Faces on each other touch, though rounding may have parted them.
-        let bounds = bounds.grown(COINCIDENT * bounds.min.abs().max(bounds.max.abs()).max_element());
+        let by = COINCIDENT * bounds.min.abs().max(bounds.max.abs());
+        let bounds = Bounds { min: bounds.min - by, max: bounds.max + by };
         self.bodies.push(Body { mesh, labelled, faces, bounds });
         Ok(())
     }

@@ -183,7 +183,8 @@ impl Views {
         }
         let next = self.at(time + 1.0);
         let moved = point + motion;
-        if next.depth(moved) > 0.0 { next.pixel(moved) - camera.pixel(point) } else { Vec2::ZERO }
+        let way = if next.depth(moved) > 0.0 { next.pixel(moved) - camera.pixel(point) } else { Vec2::ZERO };
+        if way.is_finite() { way } else { Vec2::ZERO }
     }
 
     /// Where eye rays begin, `opening` being the place of the camera when the shutter opens. Places between those that are

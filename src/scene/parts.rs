@@ -13,7 +13,7 @@ use super::geometry::Geometry;
 use super::motion::Pace;
 use super::surface::{MediumPair, Surface, SurfaceId};
 use super::world::World;
-use crate::mesh::{self, CornerNormals, RawMesh, Region, normals};
+use crate::mesh::{self, CornerNormals, RawMesh, Region, VelocityName, normals};
 use crate::optics::medium::MediumId;
 use crate::spectrum::Role;
 
@@ -46,6 +46,9 @@ pub(super) struct Placed<'a> {
     /// What becomes of its velocities; `None` when it stands still.
     pub pace: Option<Pace>,
 }
+
+/// Farthest coordinate in metres: squares of distances must stay finite.
+const FARTHEST: f32 = 1e18;
 
 impl Parts {
     /// A mesh that the simulator did not write.
@@ -139,8 +142,7 @@ impl Parts {
         let first_normal = self.geometry.normals.len() as u32;
         for (vertex, &p) in mesh.positions.iter().enumerate() {
             let relative = placed(p);
-            // Squares of distances must stay finite.
-            if relative.abs().max_element() > 1e18 {
+            if relative.abs().max_element() > f64::from(FARTHEST) {
                 let distance = relative.abs().max_element();
                 return Err(FrameError::TooFar { path: path.into(), vertex, distance });
             }
@@ -166,17 +168,45 @@ impl Parts {
         Ok(())
     }
 
-    /// Appends what vertices and normals change by; `first` are the numbers of those before.
+    /// Appends what vertices and normals change by; `first` are the numbers of those before. From the first part that moves
+    /// on there is a motion for every vertex, and a change for every normal.
     fn append_motions(&mut self, part: &Placed, first: [u32; 2], shading: Option<&CornerNormals>) {
-        let (Some(pace), Some(velocities)) = (part.pace, &part.mesh.velocities) else { return };
         let [vertices, normals] = first.map(|count| count as usize);
-        self.geometry.motions.resize(vertices, Vec3::ZERO);
-        self.geometry.motions.extend(velocities.iter().map(|&v| pace.motion(v, part.scale)));
-        if let Some(shading) = shading.filter(|_| part.normals == NormalsDescription::Smooth)
-            && let Some(changes) = pace.normal_changes(part.mesh, part.group, shading)
-        {
-            self.geometry.normal_changes.resize(normals, Vec3::ZERO);
-            self.geometry.normal_changes.extend(changes);
+        let Geometry { positions, motions, normals: all_normals, normal_changes, .. } = &mut self.geometry;
+        let mut too_fast = 0;
+        if let (Some(pace), Some(velocities)) = (part.pace, &part.mesh.velocities) {
+            motions.resize(vertices, Vec3::ZERO);
+            for (&velocity, &from) in velocities.iter().zip(&positions[vertices..]) {
+                let motion = pace.motion(velocity, part.scale);
+                let is_in_reach = motion.is_finite() && (from + motion).abs().max_element() <= FARTHEST;
+                too_fast += usize::from(!is_in_reach);
+                motions.push(if is_in_reach { motion } else { Vec3::ZERO });
+            }
+            if let Some(shading) = shading.filter(|_| part.normals == NormalsDescription::Smooth)
+                && let Some(changes) = pace.normal_changes(part.mesh, part.group, shading)
+            {
+                normal_changes.resize(normals, Vec3::ZERO);
+                normal_changes.extend(changes);
+            }
+        }
+        if !motions.is_empty() {
+            motions.resize(positions.len(), Vec3::ZERO);
+        }
+        if !normal_changes.is_empty() {
+            normal_changes.resize(all_normals.len(), Vec3::ZERO);
+        }
+        if too_fast > 0 {
+            let text = format!(
+                "{too_fast} vertices go farther than 1e18 m in a frame and stand still: check the velocities and frames.scale"
+            );
+            self.warn(part.path, [text]);
+        }
+    }
+
+    /// Warns where a mesh that changes from frame to frame has no velocities though they are asked for.
+    pub fn miss_velocities(&mut self, world: &World, mesh: &RawMesh, path: &Path) {
+        if world.velocity_name() != VelocityName::Nothing && mesh.velocities.is_none() {
+            self.warn(path, ["the file has no velocities: nothing in it moves while the shutter is open"]);
         }
     }
 

@@ -9,6 +9,7 @@ mod seeds;
 
 mod floes;
 mod furnace;
+mod plates;
 mod refused;
 mod shapes;
 mod straight;

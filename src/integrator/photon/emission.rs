@@ -14,6 +14,8 @@
 
 use std::f32::consts::PI;
 
+use std::borrow::Cow;
+
 use glam::Vec3;
 
 use crate::accel::Ignored;
@@ -80,10 +82,18 @@ impl Emission {
             lights.area.as_ref().map(|_| Kind::Area),
         ];
         let scene = scene_ball(frame);
-        let starts = lights.area.as_ref().map_or_else(Vec::new, |area| {
-            area.bright_sides().map(|(corners, normal)| place_of_triangle(frame, &corners, normal)).collect()
-        });
+        let starts = starts(frame, 0.0);
         Self { kinds: kinds.into_iter().flatten().collect(), scene, seen: seen_ball(frame, scene), starts }
+    }
+
+    /// The same at another time, where something moves; `count` photons will be emitted then.
+    pub(super) fn at(&self, frame: &Frame, time: f32, count: u32) -> Cow<'_, Self> {
+        if !frame.accel.is_in_motion() || self.starts.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let is_worth_it = self.starts.len() < count as usize / 4;
+        let starts = if is_worth_it { starts(frame, time) } else { vec![None; self.starts.len()] };
+        Cow::Owned(Self { starts, ..self.clone() })
     }
 
     /// Radius of what the eye sees, in metres.
@@ -257,13 +267,18 @@ fn seen_ball(frame: &Frame, scene: Ball) -> Ball {
     if radius > 0.0 { Ball { centre, radius } } else { scene }
 }
 
-/// What is on the bright side of an emitting triangle, where it is the same at the centroid and near the corners and
-/// nothing moves.
-fn place_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3) -> Option<Place> {
+/// What is on the bright side of each emitting triangle at a time.
+fn starts(frame: &Frame, time: f32) -> Vec<Option<Place>> {
+    let place = |(corners, normal): ([Vec3; 3], Vec3)| place_of_triangle(frame, &corners, normal, time);
+    frame.lights.area.as_ref().map_or_else(Vec::new, |area| area.bright_sides().map(place).collect())
+}
+
+/// What is on the bright side of an emitting triangle, where it is the same at the centroid and near the corners.
+fn place_of_triangle(frame: &Frame, corners: &[Vec3; 3], normal: Vec3, time: f32) -> Option<Place> {
     let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let place = place_before(frame, centroid, normal, 0.0);
-    let is_same = |corner: &Vec3| place_before(frame, corner.lerp(centroid, 1e-3), normal, 0.0) == place;
-    (!frame.accel.is_in_motion() && corners.iter().all(is_same)).then_some(place)
+    let place = place_before(frame, centroid, normal, time);
+    let is_same = |corner: &Vec3| place_before(frame, corner.lerp(centroid, 1e-3), normal, time) == place;
+    corners.iter().all(is_same).then_some(place)
 }
 
 /// What is on the bright side of a point on an emitting triangle.

@@ -205,7 +205,7 @@ impl PhotonFrame {
         let max_depth = self.mapper.path.interactions();
         Tracing {
             frame,
-            emission,
+            emission: &emission.at(frame, *time, count),
             wavelengths,
             time: *time,
             count,
