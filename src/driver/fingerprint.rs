@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use sha2::{Digest, Sha256};
 
+use super::ahead::guarded;
 use super::error::RenderError;
 use super::frame_seeds::FrameSeeds;
 use super::job::FrameTask;
@@ -223,8 +224,8 @@ fn follow_next(
     mesh: &mut FrameMesh,
 ) -> Result<(), String> {
     let (path, bytes) = next.ok_or("there is no next frame to take velocities from")??;
-    let after = mesh::parse(&bytes, &VelocityName::Nothing, &path)
-        .map_err(|e| format!("the next frame cannot be followed: {e}"))?;
+    let parse = || Ok(mesh::parse(&bytes, &VelocityName::Nothing, &path).map_err(FrameError::from)?);
+    let after = guarded(&path, parse).map_err(|e| format!("the next frame cannot be followed: {e}"))?;
     mesh::follow(&mut mesh.mesh, &after, seconds).map_err(|e| e.to_string())
 }
 
