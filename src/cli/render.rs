@@ -42,19 +42,15 @@ pub struct RenderArguments {
 
 /// Renders and says what became of it.
 pub fn run(arguments: &RenderArguments) -> Exit {
-    let settings = arguments.settings.options();
     let options = RenderOptions {
-        output: match (settings.output, arguments.preview) {
-            (Some(pattern), true) => Some(preview::place(&pattern)),
-            (pattern, _) => pattern,
-        },
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
         denoise: arguments.denoise,
         resume: arguments.resume,
         checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
-        ..settings
+        ..arguments.settings.options()
     };
+    let options = if arguments.preview { preview::options(options) } else { options };
     #[cfg(unix)]
     super::signals::obey(&options.interrupt);
     let progress = Progress::new(arguments.quiet);

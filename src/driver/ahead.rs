@@ -5,6 +5,9 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -114,15 +117,41 @@ fn prepare(
     buffers: Buffers,
 ) -> Outcome {
     let mut preparation = Preparation::default();
-    let read = || FrameSource::read(world, fingerprints, task)?.parse(world);
-    let outcome = timed(&mut preparation.read_seconds, read).and_then(|parsed| {
-        let Parsed { meshes, inputs, identity, warnings } = parsed;
-        let assemble = || world.assemble_into(buffers, task.number, meshes, inputs, previous);
-        let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
-        assembled.warnings.extend(warnings);
-        Ok(Ready { assembled, identity })
-    });
+    let path = task.files.first().unwrap_or(&world.description.file);
+    let outcome = guarded(path, || assembled(world, fingerprints, task, previous, buffers, &mut preparation));
     (outcome, preparation)
+}
+
+fn assembled(
+    world: &World,
+    fingerprints: &Fingerprints,
+    task: &FrameTask,
+    previous: Option<&Frame>,
+    buffers: Buffers,
+    preparation: &mut Preparation,
+) -> Result<Ready, RenderError> {
+    let read = || FrameSource::read(world, fingerprints, task)?.parse(world);
+    let Parsed { meshes, inputs, identity, warnings } = timed(&mut preparation.read_seconds, read)?;
+    let assemble = || world.assemble_into(buffers, task.number, meshes, inputs, previous);
+    let mut assembled = timed(&mut preparation.build_seconds, assemble)?;
+    assembled.warnings.extend(warnings);
+    Ok(Ready { assembled, identity })
+}
+
+/// Does some work on a file, and makes a panic an error of that file: one frame that floe fails on does not cost the
+/// others. Nothing that the work leaves half done may be used after that.
+pub(super) fn guarded<T>(
+    path: &Path,
+    work: impl FnOnce() -> Result<T, RenderError>,
+) -> Result<T, RenderError> {
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|panic| Err(RenderError::Fault { path: path.into(), reason: said(&*panic) }))
+}
+
+/// What a panic says.
+fn said(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say why").into()
 }
 
 /// Adds the time that some work takes.
@@ -131,4 +160,28 @@ pub(super) fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     let result = work();
     *seconds += start.elapsed().as_secs_f64();
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::error::Blame;
+
+    #[test]
+    fn a_panic_is_an_error_of_its_file() {
+        let path = Path::new("a/frame_7.vtp");
+        assert_eq!(guarded(path, || Ok(7)).unwrap(), 7);
+        let passed_on = guarded(path, || Err::<(), _>(RenderError::Interrupted));
+        assert!(matches!(passed_on, Err(RenderError::Interrupted)));
+        let number = 7;
+        for error in [
+            guarded(path, || -> Result<(), _> { panic!("index {number}") }).unwrap_err(),
+            guarded(path, || -> Result<(), _> { panic!("index 7") }).unwrap_err(),
+        ] {
+            let text = error.to_string();
+            assert!(text.starts_with("a/frame_7.vtp: ") && text.contains("(index 7)"), "{text}");
+            assert!(text.contains("report"), "{text}");
+            assert_eq!(error.blame(), Blame::Internal);
+        }
+    }
 }

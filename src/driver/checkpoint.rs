@@ -113,6 +113,11 @@ impl Checkpoint {
     pub fn remove(&self) {
         let _ = std::fs::remove_file(&self.path);
     }
+
+    /// Takes away that of a picture which is whole, left by a run that was killed in between.
+    pub fn remove_beside(picture: &Path) {
+        let _ = std::fs::remove_file(Self::path_beside(picture));
+    }
 }
 
 /// Hashes what it writes.

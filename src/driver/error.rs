@@ -130,6 +130,17 @@ pub enum RenderError {
         /// Its number.
         number: FrameNumber,
     },
+    /// floe itself is wrong.
+    #[error(
+        "{path}: floe fails on this frame ({reason}), which is a fault of floe whatever the file says: please report it \
+         together with the file, and draw the other frames with --keep-going"
+    )]
+    Fault {
+        /// The frame's file.
+        path: PathBuf,
+        /// What the panic says.
+        reason: String,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -185,7 +196,7 @@ impl RenderError {
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
-            Self::Threads { .. } | Self::Denoise(_) => Blame::Internal,
+            Self::Threads { .. } | Self::Fault { .. } | Self::Denoise(_) => Blame::Internal,
             Self::Interrupted => Blame::Interrupted,
         }
     }

@@ -1,7 +1,7 @@
 //! What a picture depends on, in 128 bits: whether it has to be drawn again is seen without drawing it.
 //!
 //! ```text
-//! fingerprint = first 128 bits of SHA-256(version of floe, scene, its files, frame number, the frame's files)
+//! fingerprint = first 128 bits of SHA-256(version of floe, PIXELS, scene, its files, frame number, the frame's files)
 //! ```
 //!
 //! The scene is what its file says with every default filled in, so comments and the order of keys do not count, and
@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use sha2::{Digest, Sha256};
 
+use super::ahead::guarded;
 use super::error::RenderError;
 use super::frame_seeds::FrameSeeds;
 use super::job::FrameTask;
@@ -21,9 +22,16 @@ use crate::mesh::{self, VelocityName};
 use crate::scene::FrameError;
 use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{OutputDescription, RenderDescription, SceneDescription};
-use crate::scene::inputs::{ContentHash, Inputs};
+use crate::scene::inputs::{ContentHash, Inputs, NO_FILE};
 use crate::scene::world::World;
 use crate::sequence::FrameNumber;
+
+/// Which pixels floe makes of what it is given, since the version stays the same between releases.
+///
+/// It is raised by one with every change after which any scene may have other pixels, by a single bit of one channel;
+/// so a picture or a checkpoint that another build has left is never taken for one of this. Changes that only make floe
+/// faster, or read what was refused, do not count.
+pub const PIXELS: u32 = 1;
 
 /// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,6 +56,7 @@ impl Fingerprints {
     pub fn new(world: &World, settings: &RenderDescription) -> Self {
         let mut common = Sha256::new();
         add(&mut common, env!("CARGO_PKG_VERSION").as_bytes());
+        add(&mut common, &PIXELS.to_le_bytes());
         add(&mut common, what_counts(&world.description, settings).as_bytes());
         add(&mut common, world.contents.as_flattened());
         let seeds = FrameSeeds::new(&world.description.render, settings.seed, settings.samples);
@@ -170,8 +179,11 @@ impl FrameSource {
         let hash = |bytes: &Vec<u8>| -> ContentHash { Sha256::digest(bytes).into() };
         let hashes: Vec<ContentHash> = self.meshes.iter().map(|(_, bytes)| hash(bytes)).collect();
         let mut others = self.inputs.hashes();
-        let next = self.next.iter().flat_map(|next| &next.files).flatten();
-        others.extend(next.map(|(_, bytes)| hash(bytes)));
+        if let Some(NextMeshes { files, seconds }) = &self.next {
+            // Velocities are distances in this time, each mesh's to the next one in its own place.
+            others.push(Sha256::digest(seconds.to_le_bytes()).into());
+            others.extend(files.iter().map(|next| next.as_ref().map_or(NO_FILE, |(_, bytes)| hash(bytes))));
+        }
         let mesh_hash = hashes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
         let fingerprint = fingerprints.of_frame(number, &hashes, &others);
         self.identity = Identity { fingerprint, mesh_hash };
@@ -212,8 +224,8 @@ fn follow_next(
     mesh: &mut FrameMesh,
 ) -> Result<(), String> {
     let (path, bytes) = next.ok_or("there is no next frame to take velocities from")??;
-    let after = mesh::parse(&bytes, &VelocityName::Nothing, &path)
-        .map_err(|e| format!("the next frame cannot be followed: {e}"))?;
+    let parse = || Ok(mesh::parse(&bytes, &VelocityName::Nothing, &path).map_err(FrameError::from)?);
+    let after = guarded(&path, parse).map_err(|e| format!("the next frame cannot be followed: {e}"))?;
     mesh::follow(&mut mesh.mesh, &after, seconds).map_err(|e| e.to_string())
 }
 

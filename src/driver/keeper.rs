@@ -9,6 +9,9 @@ use super::interrupt::Interrupt;
 use super::render::Observer;
 use super::tiles::Control;
 
+/// Least time between two checkpoints on the timer, in milliseconds: a frame must get on in between.
+const LEAST: u64 = 100;
+
 /// Watches over one frame.
 pub(super) struct Keeper<'a> {
     pub observer: &'a dyn Observer,
@@ -22,14 +25,15 @@ pub(super) struct Keeper<'a> {
 }
 
 impl<'a> Keeper<'a> {
-    /// Saves what is done each time that `every` has passed; never on a timer without it.
+    /// Saves what is done each time that `every`, or a tenth of a second, has passed; never on a timer without it.
     pub fn new(
         observer: &'a dyn Observer,
         interrupt: &'a Interrupt,
         checkpoint: Option<&'a Checkpoint>,
         every: Option<Duration>,
     ) -> Self {
-        let every = every.map_or(u64::MAX, |every| u64::try_from(every.as_millis()).unwrap_or(u64::MAX));
+        let every =
+            every.map_or(u64::MAX, |every| u64::try_from(every.as_millis()).unwrap_or(u64::MAX).max(LEAST));
         Self { observer, interrupt, checkpoint, start: Instant::now(), every, next: AtomicU64::new(every) }
     }
 

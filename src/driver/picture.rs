@@ -63,6 +63,11 @@ pub(super) fn png_path(scene: &SceneDescription, picture: &Path) -> Option<PathB
     scene.output.png.then(|| picture.with_extension("png"))
 }
 
+/// Where a picture without noise is.
+pub(super) fn denoised_path(picture: &Path) -> PathBuf {
+    picture.with_extension("denoised.exr")
+}
+
 /// Where the picture of a frame is.
 pub fn picture_path(pattern: &str, number: FrameNumber) -> PathBuf {
     PathBuf::from(output_path(pattern, number))

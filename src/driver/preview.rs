@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RenderError;
 use super::job::Job;
+use super::render::RenderOptions;
 
 /// Edge of a pixel of a preview in pixels of the picture.
 const COARSENESS: u32 = 4;
@@ -22,6 +23,15 @@ pub fn open(path: &Path) -> Result<Job, RenderError> {
     })?;
     job.world.description.output.path = Some(place(&job.output_pattern()));
     Ok(job)
+}
+
+/// What is asked for, for a preview: its pictures where [`place`] says, and no more samples than it may have.
+pub fn options(options: RenderOptions) -> RenderOptions {
+    RenderOptions {
+        output: options.output.as_deref().map(place),
+        samples: options.samples.map(|samples| samples.min(SAMPLES)),
+        ..options
+    }
 }
 
 /// The pattern for previews of pictures: the folder `preview` beside them, so that neither they nor their ledger are

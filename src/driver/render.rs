@@ -12,7 +12,7 @@ use super::ledger::FrameRecord;
 use super::resume::left;
 use super::session::Session;
 use super::watch::WatchStatus;
-use crate::scene::description::RenderDescription;
+use crate::scene::description::{RenderDescription, SceneDescription};
 use crate::sequence::{
     FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps,
 };
@@ -50,6 +50,11 @@ impl RenderOptions {
             seed: self.seed.unwrap_or(scene.seed),
             ..scene.clone()
         }
+    }
+
+    /// Whether there are to be pictures without noise.
+    pub(super) fn wants_denoised(&self, scene: &SceneDescription) -> bool {
+        self.denoise || scene.output.denoise
     }
 }
 
@@ -110,7 +115,8 @@ pub fn render(
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     let asked = tasks.len() + absent.len();
     let tasks = if options.resume {
-        let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, observer));
+        let denoise = options.wants_denoised(&job.world.description);
+        let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, denoise, observer));
         session.report.already = left.already;
         left.tasks
     } else {

@@ -1,14 +1,17 @@
 //! What is left of a run that was broken off.
 
+use std::fs::File;
 use std::path::Path;
 
 use rayon::prelude::*;
 
+use super::checkpoint::Checkpoint;
 use super::fingerprint::Fingerprints;
 use super::job::{FrameTask, Job};
-use super::picture::{picture_path, png_path};
+use super::picture::{PictureState, denoised_path, picture_path, png_path, read_identity};
 use super::render::Observer;
 use super::survey::FrameState;
+use crate::film::png::has_exposure;
 use crate::film::{FilmError, write_png_of};
 use crate::sequence::{FrameNumber, format_numbers};
 
@@ -19,22 +22,21 @@ pub(super) struct Left {
     pub already: Vec<FrameNumber>,
 }
 
-/// Parts the frames into those that are left and those whose pictures are there; a PNG that is missing is made of its
-/// picture. Tells which pictures are there but of no use.
+/// Parts the frames into those that are left and those whose pictures are there, those without noise too if they are
+/// wanted; a PNG that is missing or of another exposure is made of its picture. Tells which pictures are there but of no
+/// use.
 pub(super) fn left(
     job: &Job,
     fingerprints: &Fingerprints,
     pattern: &str,
     tasks: Vec<FrameTask>,
+    denoise: bool,
     observer: &dyn Observer,
 ) -> Left {
     let state = |task: &FrameTask| {
         let picture = picture_path(pattern, task.number);
         match FrameState::of(&job.world, fingerprints, task, &picture) {
-            FrameState::Complete => match add_missing_png(job, &picture) {
-                Ok(()) => FrameState::Complete,
-                Err(error) => FrameState::Corrupt(error.to_string()),
-            },
+            FrameState::Complete => complete(job, &picture, denoise),
             state => state,
         }
     };
@@ -64,11 +66,75 @@ pub(super) fn left(
     left
 }
 
-/// Makes the PNG of a picture that is there without the one that the scene wants.
+/// What is beside a picture that is whole and up to date is brought up to date too.
+fn complete(job: &Job, picture: &Path, denoise: bool) -> FrameState {
+    Checkpoint::remove_beside(picture);
+    let denoised = denoise.then(|| denoised_path(picture));
+    // Noise is taken from more than the picture holds, such as albedo and normals: the frame is drawn again.
+    if denoised.as_ref().is_some_and(|denoised| !is_of_the_same(denoised, picture)) {
+        return FrameState::Missing;
+    }
+    let mut pictures = [Some(picture), denoised.as_deref()].into_iter().flatten();
+    match pictures.try_for_each(|picture| add_missing_png(job, picture)) {
+        Ok(()) => FrameState::Complete,
+        Err(error) => FrameState::Corrupt(error.to_string()),
+    }
+}
+
+/// Whether a picture without noise is whole and has the fingerprint of its picture.
+fn is_of_the_same(denoised: &Path, picture: &Path) -> bool {
+    read_identity(picture)
+        .is_some_and(|id| PictureState::of(denoised, &id.fingerprint) == PictureState::Complete)
+}
+
+/// Makes the PNG of a picture that is there without the one that the scene wants, or with one of another exposure.
 pub(super) fn add_missing_png(job: &Job, picture: &Path) -> Result<(), FilmError> {
     let scene = &job.world.description;
+    let exposure = scene.output.exposure;
+    let is_there = |png: &Path| File::open(png).is_ok_and(|file| has_exposure(file, exposure));
     match png_path(scene, picture) {
-        Some(png) if !png.exists() => write_png_of(picture, &png, scene.output.exposure),
+        Some(png) if !is_there(&png) => write_png_of(picture, &png, exposure),
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::{RenderOptions, render};
+
+    struct Silent;
+    impl Observer for Silent {}
+
+    /// A still of the sky.
+    const SCENE: &str = "[sky]\nradiance = 1\n[camera]\neye = [0, -4, 0]\ntarget = [0, 0, 0]\nresolution = [4, 3]\n[render]\nsamples = 1\n";
+
+    /// The denoiser itself need not be there: any picture of the same fingerprint does.
+    #[test]
+    fn a_frame_that_lacks_its_denoised_picture_is_left_to_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let [scene, other] = ["scene.toml", "other.toml"].map(|name| folder.path().join(name));
+        std::fs::write(&scene, SCENE).unwrap();
+        std::fs::write(&other, SCENE.replace("samples = 1", "samples = 2")).unwrap();
+        let [picture, stale] = ["a.exr", "b.exr"].map(|name| folder.path().join(name));
+        for (scene, picture) in [(&scene, &picture), (&other, &stale)] {
+            let output = Some(picture.to_str().unwrap().to_owned());
+            let options = RenderOptions { output, ..RenderOptions::default() };
+            let report = render(&Job::open(scene).unwrap(), &options, &Silent).unwrap();
+            assert!(report.failures.is_empty());
+        }
+        let job = Job::open(&scene).unwrap();
+        let fingerprints = Fingerprints::new(&job.world, &job.world.description.render);
+        let pattern = picture.to_str().unwrap();
+        let count = |denoise| left(&job, &fingerprints, pattern, job.tasks(), denoise, &Silent).tasks.len();
+        assert_eq!((count(false), count(true)), (0, 1));
+        let denoised = folder.path().join("a.denoised.exr");
+        std::fs::copy(&stale, &denoised).unwrap();
+        assert_eq!(count(true), 1);
+        std::fs::copy(&picture, &denoised).unwrap();
+        assert_eq!(count(true), 0);
+        assert!(folder.path().join("a.denoised.png").exists());
+        std::fs::write(&denoised, &std::fs::read(&picture).unwrap()[..900]).unwrap();
+        assert_eq!((count(false), count(true)), (0, 1));
     }
 }

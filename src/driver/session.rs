@@ -11,7 +11,7 @@ use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::keeper::Keeper;
 use super::ledger::{FrameRecord, Ledger, Status};
-use super::picture::{FINGERPRINT, MESH_HASH, picture_path as picture, png_path};
+use super::picture::{FINGERPRINT, MESH_HASH, denoised_path, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
 use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
@@ -48,8 +48,7 @@ impl<'a> Session<'a> {
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
         let settings = options.settings(&job.world.description.render);
-        let denoise = options.denoise || job.world.description.output.denoise;
-        let denoiser = denoise.then(Denoiser::load).transpose()?;
+        let denoiser = options.wants_denoised(&job.world.description).then(Denoiser::load).transpose()?;
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
         remove_abandoned(&first_picture);
@@ -239,7 +238,7 @@ impl<'a> Session<'a> {
     ) -> Result<(), RenderError> {
         // A denoiser that fails does not cost the picture.
         let denoised = self.denoiser.as_ref().map_or(Ok(()), |denoiser| {
-            let path = path.with_extension("denoised.exr");
+            let path = denoised_path(path);
             self.write(&denoiser.denoised(image)?, camera, (number, identity), &path, true)
         });
         self.write(image, camera, (number, identity), path, false).and(denoised)

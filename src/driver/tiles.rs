@@ -4,7 +4,7 @@
 //! the order of the tiles changes a bit. Neither does it matter when rendering is broken off and how often: what is done
 //! is kept in an [`Accumulation`], in which no sample is there twice and none by half.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
@@ -116,10 +116,11 @@ impl Work<'_> {
             }
             let total = accumulation.rects.len();
             let done = AtomicUsize::new(accumulation.traced());
+            let gets_on = AtomicBool::new(false);
             let tiles = accumulation.parts.par_iter_mut().zip(&accumulation.rects);
             tiles.for_each_init(Scratch::default, |scratch, (part, rect)| {
                 let was_done = part.pixels.len() == rect.area();
-                if !was_done && self.trace(part, *rect, scratch) {
+                if !was_done && self.trace(part, *rect, scratch, &gets_on) {
                     self.control.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
                 }
             });
@@ -127,11 +128,18 @@ impl Work<'_> {
         true
     }
 
-    /// Goes on with a tile; true when it is done. A pixel that is broken off begins anew.
-    fn trace(&self, part: &mut TilePart, rect: TileRect, scratch: &mut Scratch) -> bool {
+    /// Goes on with a tile; true when it is done. A pixel that is broken off begins anew. However often it rests to be
+    /// saved, the frame `gets_on` by a pixel in between.
+    fn trace(
+        &self,
+        part: &mut TilePart,
+        rect: TileRect,
+        scratch: &mut Scratch,
+        gets_on: &AtomicBool,
+    ) -> bool {
         part.pixels.reserve_exact(rect.area() - part.pixels.len());
         for at in rect.pixels().skip(part.pixels.len()) {
-            if self.control.wants_save() {
+            if self.control.wants_save() && gets_on.load(Ordering::Relaxed) {
                 return false;
             }
             scratch.counters = Counters::default();
@@ -143,6 +151,7 @@ impl Work<'_> {
                 self.add_sample(scratch, &mut pixel, at, index, None);
             }
             part.pixels.push(pixel.finish());
+            gets_on.store(true, Ordering::Relaxed);
             part.counters += scratch.counters;
         }
         true

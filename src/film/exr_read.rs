@@ -1,4 +1,4 @@
-//! The colours of a frame's OpenEXR file, for a PNG that is missing.
+//! The colours of a frame's OpenEXR file, for a PNG that is missing and for movies.
 
 use std::io::Cursor;
 

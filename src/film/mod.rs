@@ -25,7 +25,7 @@ pub mod estimate;
 pub mod exr;
 mod exr_channels;
 mod exr_header;
-mod exr_read;
+pub mod exr_read;
 pub mod exr_seal;
 pub mod filter;
 pub mod frame_image;

@@ -10,6 +10,14 @@
 //! M is the 16 x 16 Bayer matrix, each of 0 .. 255 once. The mean over a block is right to 1/512 of a level, exact
 //! levels (black and white among them) stay as they are, nothing flickers between frames, and greys stay grey since
 //! the channels share the threshold. The picture is opaque: it shows the sky.
+//!
+//! The exposure is in the file, as text by the name [`EXPOSURE`] right behind the header `[PNG03]`:
+//!
+//! ```text
+//! length of the data, "tEXt", name 0 value, CRC-32 of type and data
+//! ```
+
+use std::io::Read;
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -17,6 +25,12 @@ use rayon::prelude::*;
 
 use super::frame_image::FrameImage;
 use super::tonemap::ToneMap;
+
+/// Name of the text with the exposure.
+const EXPOSURE: &str = "floe:exposure";
+
+/// Bytes of the signature and of the header, which is always first.
+const HEAD: usize = 8 + 25;
 
 /// The bytes of a PNG file of the frame at an exposure in stops.
 ///
@@ -31,7 +45,24 @@ pub fn encode_png(image: &FrameImage, exposure: f32) -> Result<Vec<u8>, image::I
         image.height,
         ExtendedColorType::Rgb8,
     )?;
+    bytes.splice(HEAD..HEAD, exposure_chunk(exposure));
     Ok(bytes)
+}
+
+/// Whether a PNG file begins as those do that are made with an exposure.
+pub fn has_exposure(file: impl Read, exposure: f32) -> bool {
+    let chunk = exposure_chunk(exposure);
+    let mut start = vec![0; HEAD + chunk.len()];
+    let mut file = file;
+    file.read_exact(&mut start).is_ok() && start[HEAD..] == chunk
+}
+
+fn exposure_chunk(exposure: f32) -> Vec<u8> {
+    let named = format!("tEXt{EXPOSURE}\0{exposure}").into_bytes();
+    let mut checksum = flate2::Crc::new();
+    checksum.update(&named);
+    let length = (named.len() - 4) as u32;
+    [&length.to_be_bytes()[..], &named, &checksum.sum().to_be_bytes()].concat()
 }
 
 /// Three levels a pixel, row after row, at an exposure in stops.
@@ -105,6 +136,21 @@ mod tests {
         assert!(levels(Vec3::ZERO).iter().all(|&l| l == 0));
         for bright in [1e5, 1e20, f32::MAX, f32::INFINITY] {
             assert!(levels(Vec3::splat(bright)).iter().all(|&l| l == 255), "{bright}");
+        }
+    }
+
+    #[test]
+    fn the_exposure_is_in_the_file_and_readers_pass_over_it() {
+        let image = flat(20, 3, Vec3::splat(0.2));
+        for exposure in [0.0, -1.5, 0.1] {
+            let bytes = encode_png(&image, exposure).unwrap();
+            for other in [0.0, -1.5, 0.1, 1.0] {
+                assert_eq!(has_exposure(&bytes[..], other), other == exposure, "{other} in {exposure}");
+            }
+            assert!(!has_exposure(&bytes[..HEAD + 20], exposure));
+            // The decoder checks the checksum of every chunk.
+            let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
+            assert_eq!(read.into_raw(), display_levels(&image, exposure));
         }
     }
 

@@ -5,34 +5,61 @@
 //! Rec. 709 with the sRGB curve, which the pictures have; without that, players guess by the size of the picture. Sizes
 //! that are odd get one more row or column of black, since both codecs halve the resolution of colours.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use super::error::MovieError;
 use super::pictures::{Pictures, is};
+use crate::driver::Interrupt;
 use crate::film::FilmError;
 use crate::film::write::StagedFile;
-use crate::sequence::{FrameFile, gaps};
+use crate::sequence::{FrameFile, Gap, gaps};
+
+/// The worst quality of H.264.
+const WORST_MP4: u8 = 51;
+
+/// Most frames that are held in place of missing ones: seven minutes at 24 a second, and as many links to pictures.
+const MOST_HELD: i64 = 10_000;
 
 /// How a movie is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodeOptions {
     /// The movie: .mp4, .webm or .gif.
     pub output: PathBuf,
-    /// Frames a second; `None` is what the scene says.
+    /// Frames a second; `None` is what the scene or the pictures say.
     pub fps: Option<f64>,
     /// Quality of MP4 (0 to 51) and WebM (0 to 63), less is better; `None` is 18, or 30 for WebM.
     pub crf: Option<u8>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(crate) enum Kind {
     Mp4,
     WebM,
     Gif,
 }
 
-/// Makes a movie; `warn` hears of frames that are missing. Returns how many frames it has.
+impl EncodeOptions {
+    /// What kind of movie is asked for.
+    ///
+    /// # Errors
+    /// When there is no such kind, or not of this quality.
+    pub(crate) fn check(&self) -> Result<Kind, MovieError> {
+        let kind = kind(&self.output)?;
+        match self.crf {
+            Some(crf) if kind == Kind::Mp4 && crf > WORST_MP4 => {
+                Err(MovieError::Quality { path: self.output.clone(), crf, most: WORST_MP4 })
+            }
+            _ => Ok(kind),
+        }
+    }
+}
+
+/// Makes a movie; `warn` hears of frames that are missing. Returns how many frames it has. When the `interrupt` is
+/// requested, ffmpeg is ended and everything temporary removed.
 ///
 /// # Errors
 /// When a picture is damaged or has another size, when ffmpeg is not there or fails, or the movie cannot be written.
@@ -40,9 +67,11 @@ enum Kind {
 pub fn encode(
     pictures: &Pictures,
     options: &EncodeOptions,
+    interrupt: &Interrupt,
     mut warn: impl FnMut(String),
 ) -> Result<usize, MovieError> {
-    let kind = kind(&options.output)?;
+    let kind = options.check()?;
+    let frames = in_time(&pictures.files)?;
     let fps = options.fps.unwrap_or(pictures.fps);
     let arguments = |input: &Path, first: &str, output: &Path| {
         let input = ["-start_number", first, "-i"].map(String::from).into_iter().chain([text(input)]);
@@ -58,10 +87,9 @@ pub fn encode(
     for gap in gaps(&pictures.files) {
         warn(format!("frame {gap} is missing: the frame before it is held"));
     }
-    let frames = in_time(&pictures.files);
-    let folder = staged(pictures, &frames)?;
+    let folder = staged(pictures, &frames, interrupt)?;
     let movie = StagedFile::new(&options.output, &[])?;
-    run(&arguments(&folder.path().join("%08d.png"), "0", movie.path()))?;
+    run(&arguments(&folder.path().join("%08d.png"), "0", movie.path()), interrupt)?;
     movie.commit()?;
     Ok(frames.len())
 }
@@ -101,28 +129,40 @@ fn codec(kind: Kind, crf: Option<u8>) -> Vec<String> {
 }
 
 /// One picture for each moment: those of gaps are the ones before them.
-fn in_time(files: &[FrameFile]) -> Vec<&FrameFile> {
-    let gaps = gaps(files);
-    let held = |next: Option<&FrameFile>| {
-        let gap = next.and_then(|next| {
-            gaps.iter().find(|gap| {
-                gap.last.integer().zip(next.number.integer()).is_some_and(|(l, n)| l + gap.step == n)
-            })
-        });
-        let count = gap.and_then(|gap| Some((gap.last.integer()? - gap.first.integer()?) / gap.step + 1));
-        count.unwrap_or(0) as usize
-    };
-    let times = |(i, file)| std::iter::repeat_n(file, 1 + held(files.get(i + 1)));
-    files.iter().enumerate().flat_map(times).collect()
+fn in_time(files: &[FrameFile]) -> Result<Vec<&FrameFile>, MovieError> {
+    let mut gaps = gaps(files).into_iter().peekable();
+    let mut frames: Vec<&FrameFile> = Vec::new();
+    let mut held = 0;
+    for file in files {
+        let follows = |gap: &Gap| gap.last < file.number;
+        if let (Some(gap), Some(&before)) = (gaps.next_if(follows), frames.last()) {
+            let missing = gap.last.integer().zip(gap.first.integer()).map(|(last, first)| last - first);
+            let missing = missing.map_or(0, |way| way / gap.step + 1);
+            held += missing;
+            if held > MOST_HELD {
+                return Err(MovieError::Gap { path: file.path.clone(), gap, count: held, most: MOST_HELD });
+            }
+            frames.extend(std::iter::repeat_n(before, missing as usize));
+        }
+        frames.push(file);
+    }
+    Ok(frames)
 }
 
 /// A temporary folder with `00000000.png`, `00000001.png`, ...
-fn staged(pictures: &Pictures, frames: &[&FrameFile]) -> Result<tempfile::TempDir, MovieError> {
+fn staged(
+    pictures: &Pictures,
+    frames: &[&FrameFile],
+    interrupt: &Interrupt,
+) -> Result<tempfile::TempDir, MovieError> {
     let cannot = |path: &Path, source| FilmError::CannotCreate { path: path.into(), source };
     let folder = tempfile::tempdir().map_err(|source| cannot(&std::env::temp_dir(), source))?;
     let mut size = None;
     let mut before: Option<(&FrameFile, PathBuf)> = None;
     for (i, &file) in frames.iter().enumerate() {
+        if interrupt.is_requested() {
+            return Err(MovieError::Interrupted);
+        }
         let name = folder.path().join(format!("{i:08}.png"));
         let source = match &before {
             Some((held, path)) if *held == file => path.clone(),
@@ -186,21 +226,51 @@ fn is_there() -> bool {
     !silent.is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound)
 }
 
-fn run(arguments: &[String]) -> Result<(), MovieError> {
-    let failed = |status: String, message: String| MovieError::Ffmpeg {
+fn run(arguments: &[String], interrupt: &Interrupt) -> Result<(), MovieError> {
+    let failed = |status: String, message: &str| MovieError::Ffmpeg {
         status,
-        message,
+        message: message.into(),
         command: command_line(arguments),
     };
-    let output = Command::new("ffmpeg").args(arguments).stdin(Stdio::null()).output();
-    let output = output.map_err(|error| failed("it did not start".into(), error.to_string()))?;
-    if output.status.success() {
+    let mut command = Command::new("ffmpeg");
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let broken = |error: std::io::Error| failed("it did not start".into(), &error.to_string());
+    let mut ffmpeg = command.spawn().map_err(broken)?;
+    let said = ffmpeg.stderr.take();
+    let (status, said) = thread::scope(|scope| {
+        // It waits when nobody takes what it says.
+        let listener = scope.spawn(|| {
+            let mut text = Vec::new();
+            said.map(|mut said| said.read_to_end(&mut text));
+            text
+        });
+        (wait(&mut ffmpeg, interrupt), listener.join().unwrap_or_default())
+    });
+    let status = status.map_err(broken)?;
+    // What is asked to stop from a terminal is asked together with ffmpeg, which may be the first to end.
+    if interrupt.is_requested() {
+        return Err(MovieError::Interrupted);
+    }
+    if status.success() {
         return Ok(());
     }
-    let said = String::from_utf8_lossy(&output.stderr);
+    let said = String::from_utf8_lossy(&said);
     let lines: Vec<&str> = said.trim().lines().collect();
-    let end = lines[lines.len().saturating_sub(5)..].join("\n");
-    Err(failed(output.status.to_string(), end))
+    Err(failed(status.to_string(), &lines[lines.len().saturating_sub(5)..].join("\n")))
+}
+
+/// Waits for a program to end, and ends it when that is asked for.
+fn wait(program: &mut Child, interrupt: &Interrupt) -> std::io::Result<ExitStatus> {
+    loop {
+        if let Some(status) = program.try_wait()? {
+            return Ok(status);
+        }
+        if interrupt.is_requested() {
+            program.kill()?;
+            return program.wait();
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
 }
 
 fn text(path: &Path) -> String {
@@ -232,9 +302,20 @@ mod tests {
             (vec!["7"], "7"),
         ] {
             let files = numbered(&there);
-            let names: Vec<String> = in_time(&files).iter().map(|f| f.number.to_string()).collect();
+            let names: Vec<String> = in_time(&files).unwrap().iter().map(|f| f.number.to_string()).collect();
             assert_eq!(names.join(" "), shown);
         }
+    }
+
+    #[test]
+    fn gaps_that_nobody_wants_to_watch_are_refused() {
+        assert_eq!(in_time(&numbered(&["0", "1", "10002"])).unwrap().len(), 10_003);
+        for there in [["1", "2", "20000000"], ["1", "10004", "10005"], ["0", "1", "100000000000"]] {
+            let text = in_time(&numbered(&there)).unwrap_err().to_string();
+            assert!(text.contains("at most 10000") && text.contains("missing"), "{text}");
+        }
+        // Every ten thousandth frame is no gap.
+        assert_eq!(in_time(&numbered(&["0", "20000000", "40000000"])).unwrap().len(), 3);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::driver::RenderError;
 use crate::film::FilmError;
-use crate::sequence::SequenceError;
+use crate::sequence::{FrameNumber, Gap, SequenceError, format_numbers};
 
 /// What went wrong on the way from pictures to a movie or a sheet.
 #[derive(Debug, thiserror::Error)]
@@ -19,11 +19,45 @@ pub enum MovieError {
     #[error(transparent)]
     Film(#[from] FilmError),
     /// There are no pictures yet.
-    #[error("no pictures {}: render them first, or give the folder or the pattern of their names", wanted.display())]
+    #[error(
+        "no pictures {}: render them first, or give the folder or the pattern of their names{}",
+        wanted.display(), but_previews(unfinished)
+    )]
     NoPictures {
         /// The name, or pattern of names, that they would have.
         wanted: PathBuf,
+        /// Frames of which there is only a PNG.
+        unfinished: Vec<FrameNumber>,
     },
+    /// A picture would be held for ages.
+    #[error(
+        "{}: frames {gap} before it are missing, and a movie would hold still for {count} frames (at most {most}): if it \
+         belongs to another sequence, move it into another folder, or give it a number next to the others",
+        path.display()
+    )]
+    Gap {
+        /// The picture behind the gap.
+        path: PathBuf,
+        /// What is missing.
+        gap: Gap,
+        /// Frames to be held, in this gap and those before it.
+        count: i64,
+        /// The most of them.
+        most: i64,
+    },
+    /// MP4 has fewer qualities than WebM.
+    #[error("--crf {crf}: {} can have 0 to {most}, less is better", path.display())]
+    Quality {
+        /// The movie.
+        path: PathBuf,
+        /// What was asked for.
+        crf: u8,
+        /// The worst that there is.
+        most: u8,
+    },
+    /// It was asked to stop.
+    #[error("interrupted; no movie is written")]
+    Interrupted,
     /// A picture cannot be read.
     #[error("{}: {reason}; render this frame again", path.display())]
     Picture {
@@ -70,4 +104,11 @@ pub enum MovieError {
         /// Its name.
         path: PathBuf,
     },
+}
+
+fn but_previews(unfinished: &[FrameNumber]) -> String {
+    match unfinished {
+        [] => String::new(),
+        numbers => format!("; there are PNGs of {} alone, which may be previews", format_numbers(numbers)),
+    }
 }

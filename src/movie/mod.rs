@@ -12,5 +12,5 @@ pub mod sheet;
 
 pub use encode::{EncodeOptions, encode};
 pub use error::MovieError;
-pub use pictures::Pictures;
+pub use pictures::{FRAME_RATES, Pictures};
 pub use sheet::contact_sheet;

@@ -15,10 +15,15 @@ use crate::sequence::FrameNumber;
 /// SHA-256 of the contents of a file.
 pub type ContentHash = [u8; 32];
 
+/// In place of the hash of a file that is not there; no contents are known that hash to it.
+pub const NO_FILE: ContentHash = [0; 32];
+
 /// Contents of files in the order in which they were first asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {
     files: Vec<(PathBuf, Vec<u8>)>,
+    /// The meshes of the frame, each with the file beside it that has its velocities.
+    velocities: Vec<(PathBuf, Option<PathBuf>)>,
 }
 
 impl Inputs {
@@ -28,8 +33,10 @@ impl Inputs {
     /// When one cannot be read, or a pattern cannot be filled in.
     pub fn of_frame(world: &World, number: FrameNumber, meshes: &[PathBuf]) -> Result<Self, FrameError> {
         let mut inputs = Self::default();
-        for path in meshes.iter().filter_map(|mesh| mesh::velocities_beside(mesh, &world.velocity_name())) {
-            inputs.mesh_bytes(&path)?;
+        for mesh in meshes {
+            let beside = mesh::velocities_beside(mesh, &world.velocity_name());
+            beside.as_ref().map_or(Ok(&[][..]), |path| inputs.mesh_bytes(path))?;
+            inputs.velocities.push((mesh.clone(), beside));
         }
         for path in world.surfaces_of_frame(number) {
             inputs.mesh_bytes(&path?.1)?;
@@ -40,16 +47,19 @@ impl Inputs {
         Ok(inputs)
     }
 
-    /// The hash of each file.
+    /// The hash of each file, behind which meshes have velocities beside them: [`NO_FILE`] where there are none.
     pub fn hashes(&self) -> Vec<ContentHash> {
-        self.files.iter().map(|(_, bytes)| Sha256::digest(bytes).into()).collect()
+        let hash = |bytes: &[u8]| -> ContentHash { Sha256::digest(bytes).into() };
+        let beside = self.velocities.iter().map(|(_, beside)| beside.as_deref());
+        let beside = beside.map(|path| path.and_then(|path| self.known(path)).map_or(NO_FILE, hash));
+        beside.chain(self.files.iter().map(|(_, bytes)| hash(bytes))).collect()
     }
 
     pub(super) fn mesh(&mut self, path: &Path, velocity: &VelocityName) -> Result<RawMesh, MeshError> {
         mesh::parse(self.mesh_bytes(path)?, velocity, path)
     }
 
-    /// Gives a mesh the velocities of the file beside it, if that is among these.
+    /// Gives a mesh the velocities of the file that was beside it when these were read, if they are asked for.
     ///
     /// # Errors
     /// When it is wrong.
@@ -59,9 +69,19 @@ impl Inputs {
         path: &Path,
         velocity: &VelocityName,
     ) -> Result<(), MeshError> {
-        let beside = mesh::velocities_beside(path, velocity);
-        let known = beside.and_then(|path| self.files.iter().find(|(known, _)| *known == path));
-        known.map_or(Ok(()), |(path, bytes)| mesh::add_velocities(mesh, bytes, path))
+        if *velocity == VelocityName::Nothing {
+            return Ok(());
+        }
+        // The file may have come or gone meanwhile: what counts is what the fingerprint knows of.
+        let beside =
+            self.velocities.iter().find(|(of, _)| of == path).and_then(|(_, beside)| beside.as_deref());
+        let known = beside.and_then(|beside| Some((beside, self.known(beside)?)));
+        known.map_or(Ok(()), |(beside, bytes)| mesh::add_velocities(mesh, bytes, beside))
+    }
+
+    /// The contents of a file that has been asked for.
+    fn known(&self, path: &Path) -> Option<&[u8]> {
+        self.files.iter().find(|(known, _)| known == path).map(|(_, bytes)| bytes.as_slice())
     }
 
     pub(super) fn volume(&mut self, path: &Path) -> Result<Volume, VolumeError> {

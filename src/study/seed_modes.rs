@@ -7,10 +7,12 @@ use serde::Serialize;
 use super::error::StudyError;
 use super::temporal::{TemporalErrors, TemporalMetrics, WINDOW};
 use crate::driver::RenderError;
+use crate::driver::fingerprint::{Fingerprints, FrameSource, Parsed};
 use crate::driver::frame_seeds::FrameSeeds;
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::tiles::{Sampling, render_pixels};
 use crate::film::tonemap::ToneMap;
+use crate::scene::assembly::Buffers;
 use crate::scene::description::{RenderDescription, SeedMode};
 use crate::scene::frame::Frame;
 use crate::sequence::{FrameNumber, FrameSelection, format_numbers};
@@ -114,8 +116,11 @@ fn tasks(job: &Job, study: &SeedModeStudy) -> Result<Vec<FrameTask>, StudyError>
 }
 
 fn assemble(job: &Job, task: &FrameTask, previous: Option<&Frame>) -> Result<Frame, RenderError> {
-    let meshes = task.read(&job.world.velocity_name())?;
-    Ok(job.world.assemble(task.number, meshes, previous).map_err(RenderError::from)?.frame)
+    let fingerprints = Fingerprints::new(&job.world, &job.world.description.render);
+    let Parsed { meshes, inputs, .. } =
+        FrameSource::read(&job.world, &fingerprints, task)?.parse(&job.world)?;
+    let assembled = job.world.assemble_into(Buffers::default(), task.number, meshes, inputs, previous);
+    Ok(assembled.map_err(RenderError::from)?.frame)
 }
 
 /// The luma of one picture as a screen shows it, from 0 to 1.

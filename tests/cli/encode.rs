@@ -103,12 +103,88 @@ fn a_scene_stands_for_its_pictures_and_an_exr_for_its_png() {
     let shown = text(&folder, "read");
     // Another encoder may compress otherwise, so pixels are compared, on the sheets.
     with_fake(&folder, &["boxes", "--contact-sheet", "png.png"]).ended(0);
+    // From elsewhere, and through the folder of the pictures with a scene of its own, they are the same.
+    folder.write(
+        "out/boxes/scene.toml",
+        text(&folder, "boxes/scene.toml").replace("frames/", "../../boxes/frames/"),
+    );
+    folder.write("away/here", "");
+    let path = format!("{}:/usr/bin:/bin", folder.path("bin").display());
+    let mut away = command(&folder, &["encode", "../out/boxes", "-o", "movie.mp4"]);
+    let away = away.current_dir(folder.path("away")).env("PATH", path).output().unwrap();
+    assert!(away.status.success(), "{away:?}");
+    assert_eq!(text(&folder, "away/read"), shown);
     std::fs::remove_file(folder.path("out/boxes/frame_0001.png")).unwrap();
     std::fs::remove_file(folder.path("out/boxes/frame_0002.png")).unwrap();
     with_fake(&folder, &["boxes"]).ended(0);
     assert_eq!(shown.lines().count(), text(&folder, "read").lines().count());
     with_fake(&folder, &["boxes", "--contact-sheet", "exr.png"]).ended(0);
     assert_eq!(folder.read("png.png"), folder.read("exr.png"));
+}
+
+/// Previews of a watch that was broken off are PNGs alone, and PNGs from before `png = false` are older than their EXRs.
+#[test]
+fn a_png_is_taken_for_a_picture_only_where_it_is_one() {
+    let folder = boxes(3, "[frames]\npath = \"frames/frame_####.ply\"\nfps = 30\n[output]\nexposure = 1\n");
+    floe(&folder, &["render", "boxes"]).ended(0);
+    let sheet = |name: &str, what: &str| {
+        let outcome = encode(&folder, "", &[what, "--contact-sheet", name]).ended(0);
+        (folder.read(name), outcome)
+    };
+    let (whole, _) = sheet("whole.png", "boxes");
+    let other = folder.path("out/boxes/frame_0002.png");
+    image::RgbImage::new(16, 9).save(&other).unwrap();
+    let (newer, _) = sheet("newer.png", "boxes");
+    assert_ne!(newer, whole);
+    let long_ago = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1_000_000_000);
+    std::fs::File::options().append(true).open(&other).unwrap().set_modified(long_ago).unwrap();
+    let (older, _) = sheet("older.png", "boxes");
+    assert_eq!(older, whole);
+    std::fs::remove_file(folder.path("out/boxes/frame_0003.exr")).unwrap();
+    let (of_scene, outcome) = sheet("two.png", "boxes");
+    let outcome = outcome.says(&["may be previews", ": 3\n"]);
+    assert_eq!(outcome.stdout, "2 pictures in two.png\n");
+    // Without a scene nobody knows better. EXRs say how many there are a second.
+    folder.write("bin/ffmpeg", FFMPEG);
+    std::fs::set_permissions(folder.path("bin/ffmpeg"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(
+        with_fake(&folder, &["out/boxes"]).ended(0).stdout,
+        "3 frames at 30 a second in out/boxes/movie.mp4\n"
+    );
+    assert_ne!(of_scene, whole);
+    for number in [1, 2] {
+        std::fs::remove_file(folder.path(&format!("out/boxes/frame_{number:04}.exr"))).unwrap();
+    }
+    with_fake(&folder, &["boxes"]).ended(66).says(&["no pictures", "PNGs of 1-3 alone"]);
+}
+
+/// ffmpeg that would take a minute.
+#[test]
+fn a_signal_ends_ffmpeg_and_leaves_nothing() {
+    for signal in ["INT", "TERM"] {
+        let folder = shots(&[1, 2]);
+        folder.write(
+            "bin/ffmpeg",
+            "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\necho begun > begun\nexec sleep 60\n",
+        );
+        folder.write("temporary/kept", "");
+        let path = format!("{}:/usr/bin:/bin", folder.path("bin").display());
+        let mut child = command(&folder, &["encode", "shot"])
+            .env("PATH", path)
+            .env("TMPDIR", folder.path("temporary"))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        while !folder.path("begun").exists() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let id = child.id().to_string();
+        Command::new("sh").args(["-c", "kill -$0 $1", signal, &id]).status().unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(75));
+        assert_eq!(folder.leftovers(), [""; 0]);
+        assert_eq!(std::fs::read_dir(folder.path("temporary")).unwrap().count(), 1);
+        assert!(!folder.path("shot/movie.mp4").exists());
+    }
 }
 
 #[test]
@@ -140,10 +216,21 @@ fn what_cannot_be_encoded_is_told_and_leaves_nothing() {
     with_fake(&folder, &["shot"]).ended(70).says(&["no such codec", "libx264"]);
     std::fs::remove_file(folder.path("fail")).unwrap();
     with_fake(&folder, &["shot", "-o", "a.avi"]).ended(2).says(&["a.avi", ".webm"]);
+    with_fake(&folder, &["shot", "--crf", "52"]).ended(2).says(&["--crf 52", "0 to 51"]);
     with_fake(&folder, &["shot", "--fps", "0"]).ended(2);
     with_fake(&folder, &["shot", "--columns", "2"]).ended(2).says(&["--contact-sheet"]);
     with_fake(&folder, &["nowhere"]).ended(66).says(&["nowhere"]);
     with_fake(&folder, &["bin"]).ended(66).says(&["no pictures bin"]);
+    let far = folder.path("shot/frame_20000000.png");
+    image::RgbImage::new(6, 4).save(&far).unwrap();
+    with_fake(&folder, &["shot"]).ended(65).says(&[
+        "frame_20000000.png",
+        "frames 3-19999999",
+        "at most 10000",
+    ]);
+    std::fs::rename(far, folder.path("shot/frame_100000000000.png")).unwrap();
+    with_fake(&folder, &["shot"]).ended(65).says(&["3-99999999999", "another folder"]);
+    std::fs::remove_file(folder.path("shot/frame_100000000000.png")).unwrap();
     image::RgbImage::new(8, 4).save(folder.path("shot/frame_0003.png")).unwrap();
     with_fake(&folder, &["shot"]).ended(65).says(&["frame_0003.png: 8 x 4", "6 x 4"]);
     folder.write("shot/frame_0003.png", "no picture");

@@ -12,6 +12,8 @@ fn a_preview_is_small_quick_and_nowhere_near_the_pictures() {
     assert_eq!((png.width(), png.height()), (4, 2));
     let ledger = folder.ledger("out/boxes/preview/ledger.jsonl");
     assert_eq!(ledger[0]["samples"], 4 * 2 * 16);
+    floe(&folder, &["render", "boxes", "--preview", "--samples", "200"]).ended(0);
+    assert_eq!(folder.ledger("out/boxes/preview/ledger.jsonl")[2]["samples"], 4 * 2 * 16);
     floe(&folder, &["render", "boxes", "--preview", "-o", "a/b_####.exr", "--samples", "1"]).ended(0);
     assert!(folder.files().contains(&"a/preview/b_0002.exr".to_owned()), "{:?}", folder.files());
 }

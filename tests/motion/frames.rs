@@ -1,7 +1,8 @@
 //! Sequences: other triangles from frame to frame, velocities from the next frame, threads.
 
-use floe::driver::RenderOptions;
+use floe::driver::{Job, RenderOptions};
 use floe::mesh::RawMesh;
+use floe::study::{SeedModeStudy, study_seed_modes};
 use glam::{DVec3, Vec3};
 
 use crate::small::{Folder, cuboid, joined, labelled, ply, scene, without_marks};
@@ -107,4 +108,20 @@ fn files_without_velocities_are_told_and_rendered() {
     assert_eq!(warnings(&silent), [""]);
     let pictures = [&silent, &folder].map(|f| without_marks(f.read("out/frame_0000.exr")));
     assert!(pictures[0] == pictures[1]);
+}
+
+/// Bodies that go on without velocities in their files: with `frames` as the source of velocities they are blurred, so the
+/// study measures other pictures than with `none`.
+#[test]
+fn studies_follow_vertices_too() {
+    let measured = |velocity: &str| {
+        let frames = format!("[frames]\npath = \"frames/frame_####.ply\"\nvelocity = \"{velocity}\"\n");
+        let folder = Folder::with_scene(&scene(&format!("{frames}{OPEN}")));
+        for number in 0..8 {
+            folder.frame(number, &body(DVec3::X * 0.2 * f64::from(number)));
+        }
+        let job = Job::open(&folder.path("scene.toml")).unwrap();
+        study_seed_modes(&job, &SeedModeStudy::default(), |_| ()).unwrap()
+    };
+    assert_ne!(measured("frames"), measured("none"));
 }

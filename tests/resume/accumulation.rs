@@ -31,6 +31,24 @@ impl Control for Impatient {
     }
 }
 
+/// Wants a save whenever it is asked, and stops where saves come without a pixel between them.
+struct Restless(AtomicU64);
+
+impl Control for Restless {
+    fn stops(&self) -> bool {
+        // More than there are pixels.
+        self.0.load(Ordering::Relaxed) > 37 * 19
+    }
+
+    fn wants_save(&self) -> bool {
+        true
+    }
+
+    fn save(&self, _: &Accumulation) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
 fn check(integrator: &str, seed: u64) {
     let folder = boxes(1, "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n");
     edit(&folder, "resolution = [16, 9]", "resolution = [37, 19]");
@@ -42,6 +60,9 @@ fn check(integrator: &str, seed: u64) {
         job.world.assemble(task.number, task.read(&job.world.velocity_name()).unwrap(), None).unwrap().frame;
     let sampling = Sampling::new(&job.world.description.render);
     let alone = render_pixels(&frame, &sampling, &|_, _| ());
+    let mut restless = Accumulation::new(frame.views.opening.resolution());
+    let ends = accumulate(&mut restless, &frame, &sampling, &Restless(AtomicU64::new(0)));
+    assert!(ends && restless.finish() == alone, "{integrator} with saves all the time");
     let (mut numbers, mut stops) = (Numbers(seed), 0);
     for threads in [1, 1, 2, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -134,3 +134,70 @@ fn pictures_say_which_frame_they_are() {
     assert_eq!(read_identity(&folder.path("floor.ply")), None);
     assert_eq!(read_identity(&folder.path("nothing.exr")), None);
 }
+
+/// Bodies as frames 1 and 2, or 1 and 3, whose velocities follow from each other.
+fn moving(second: u32) -> Folder {
+    let tables = "[frames]\npath = \"frames/frame_####.ply\"\nvelocity = \"frames\"\n\
+                  [camera]\neye = [0.4, -4, 0.9]\ntarget = [0, 0, 0]\nresolution = [16, 9]\nshutter = 0.5\n";
+    let folder = Folder::with_scene(&scene(tables));
+    folder.frame(1, &labelled(cube(), 0, 1));
+    folder.frame(second, &labelled(cuboid(DVec3::splat(-0.7), DVec3::splat(0.9)), 0, 1));
+    folder
+}
+
+/// The same way takes twice the time: velocities are half as large.
+#[test]
+fn the_time_to_the_next_frame_counts() {
+    let options = RenderOptions::default();
+    let [near, far] = [2, 3].map(|second| identity(&moving(second), 1, &options));
+    assert_ne!(near.fingerprint, far.fingerprint);
+    assert_eq!(near, identity(&moving(2), 1, &options));
+}
+
+/// A triangle of FLIP Fluids, or its velocities.
+fn triples(lists: &[&[[f32; 3]]], indices: &[[i32; 3]]) -> Vec<u8> {
+    let list = |list: &&[[f32; 3]]| {
+        let numbers = list.as_flattened().iter().flat_map(|n| n.to_le_bytes());
+        (list.len() as i32).to_le_bytes().into_iter().chain(numbers).collect::<Vec<u8>>()
+    };
+    let mut bytes: Vec<u8> = lists.iter().flat_map(list).collect();
+    bytes.extend((indices.len() as i32).to_le_bytes());
+    bytes.extend(indices.as_flattened().iter().flat_map(|i| i.to_le_bytes()));
+    bytes
+}
+
+/// Two meshes a frame; velocities lie beside the first, or the same ones beside the second.
+#[test]
+fn velocities_count_for_the_mesh_that_they_lie_beside() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let folder = Folder::with_scene(
+        "[media.water]\nior = 1.33\n[media.ice]\nior = 1.31\n[sky]\nradiance = 1\n[camera]\neye = [0.4, -4, 0.9]\n\
+         target = [0, 0, 0]\nresolution = [16, 9]\nshutter = 0.5\n[[meshes]]\npath = \"a/######.bobj\"\n\
+         inside = \"water\"\n[[meshes]]\npath = \"b/######.bobj\"\ninside = \"ice\"\n",
+    );
+    for mesh in ["a", "b"] {
+        folder.write(&format!("{mesh}/000001.bobj"), triples(&[&corners], &[[0, 1, 2]]));
+    }
+    let job = Job::open(&folder.path("scene.toml")).unwrap();
+    let fingerprints = Fingerprints::new(&job.world, &job.world.description.render);
+    let source = || FrameSource::read(&job.world, &fingerprints, &job.tasks()[0]).unwrap();
+    let speeds = triples(&[&[[1.0, 2.0, 3.0]; 3]], &[]);
+    let of = |beside: Option<&str>| {
+        let names = ["a", "b"].map(|mesh| format!("{mesh}/velocity000001.bobj"));
+        names.iter().for_each(|name| drop(std::fs::remove_file(folder.path(name))));
+        beside.map(|mesh| folder.write(&format!("{mesh}/velocity000001.bobj"), &speeds));
+        source().identity.fingerprint
+    };
+    let [none, first, second] = [None, Some("a"), Some("b")].map(of);
+    assert!(none != first && none != second && first != second, "{none} {first} {second}");
+    // What was hashed is what counts: a file may come or go before the mesh is parsed.
+    let hashed = source();
+    of(None);
+    let bare = source();
+    of(Some("a"));
+    let has = |source: FrameSource| -> Vec<bool> {
+        source.parse(&job.world).unwrap().meshes.iter().map(|m| m.mesh.velocities.is_some()).collect()
+    };
+    assert_eq!(has(bare), [false, false]);
+    assert_eq!(has(hashed), [false, true]);
+}

@@ -109,6 +109,25 @@ fn the_picture_of_another_frame_is_not_taken_for_this_one() {
     assert_eq!(pictures(&folder), before);
 }
 
+/// The exposure changes no picture, but its PNG.
+#[test]
+fn a_png_of_another_exposure_is_made_anew_of_the_picture() {
+    let folder = rendered();
+    edit(&folder, "[render]", "[output]\nexposure = 1\n[render]");
+    assert_eq!(drawn(&folder, &[], &[]), [""; 0]);
+    let resumed = pictures(&folder);
+    floe(&folder, &["render", "boxes"]).ended(0);
+    assert_eq!(pictures(&folder), resumed);
+}
+
+/// A run that is killed between a picture and the removal of its checkpoint leaves both.
+#[test]
+fn the_checkpoint_of_a_picture_that_is_whole_is_removed() {
+    let folder = rendered();
+    folder.write("out/boxes/.frame_0002.checkpoint", "whatever");
+    assert_eq!(drawn(&folder, &[], &[]), [""; 0]);
+}
+
 #[test]
 fn a_png_that_is_missing_is_made_of_the_picture() {
     let folder = rendered();

@@ -98,8 +98,9 @@ pub(super) fn read(
     // Where base64 goes on, the last group of the header begins the data.
     let apart = first.len() == storage.header;
     let (from, skipped) = if apart { (after, 0) } else { (0, storage.header) };
-    let (bytes, _) = encoded.bytes(from, skipped + expected)?;
-    Ok(bytes[skipped..skipped + expected].to_vec())
+    // What is beyond all numbers is beyond the bytes that are there.
+    let (bytes, _) = encoded.bytes(from, skipped.saturating_add(expected))?;
+    Ok(bytes[skipped..][..expected].to_vec())
 }
 
 fn check_size(announced: u128, expected: usize) -> Result<(), Fault> {
@@ -206,5 +207,16 @@ mod tests {
         assert_eq!(problem, "2000000000 bytes, but the counts of the piece need 20");
         let problem = decoded(Encoded::base64(&text), 4, 2_000_000_000).unwrap_err();
         assert_eq!(problem, "2000000004 bytes are announced, the 32 that are left hold fewer");
+    }
+    #[test]
+    fn sizes_at_the_end_of_all_numbers_are_refused() {
+        for expected in [usize::MAX, usize::MAX - 7, usize::MAX - 8, usize::MAX / 3] {
+            let bytes = [&(expected as u64).to_le_bytes()[..], &[0; 10]].concat();
+            let text = WRITER.encode(&bytes);
+            for encoded in [Encoded::base64(&text), Encoded::Raw(&bytes)] {
+                let problem = decoded(encoded, 8, expected).unwrap_err();
+                assert!(problem.contains("bytes are announced"), "{problem}");
+            }
+        }
     }
 }
