@@ -69,7 +69,7 @@ pub struct Rules([Duration; 3]);
 impl Rules {
     /// Rules by the least time of quiet.
     pub fn new(quiet: Duration) -> Self {
-        Self([quiet, quiet * 4, quiet * 20])
+        Self([quiet, quiet.saturating_mul(4), quiet.saturating_mul(20)])
     }
 
     /// How long a file has to be quiet before it is looked at.
@@ -164,10 +164,15 @@ impl Readiness {
     /// When the file is to be looked at; `None` when there is nothing to be done before it changes.
     pub fn due(&self, rules: &Rules) -> Option<Duration> {
         match self.stage {
-            Stage::Changing(step) => Some(self.since + rules.step(step, &self.signature)),
+            Stage::Changing(step) => Some(self.since.saturating_add(rules.step(step, &self.signature))),
             Stage::Failed(again) => again,
             Stage::Refused | Stage::Accepted => None,
         }
+    }
+
+    /// Whether it is to be looked at again although it did not change, after a failure that may pass.
+    pub fn is_retried(&self) -> bool {
+        matches!(self.stage, Stage::Failed(Some(_)))
     }
 
     /// Whether everything is said about the file as it is.

@@ -41,7 +41,7 @@ pub struct WatchOptions {
     pub render: RenderOptions,
     /// Which frame is drawn first when several wait.
     pub order: Order,
-    /// Ends when this frame is drawn, and those before it that are there.
+    /// Ends when this frame is drawn or bad, and those before it that are there.
     pub until: Option<FrameNumber>,
     /// Ends when all is drawn and nothing has changed for so long.
     pub idle_timeout: Option<Duration>,
@@ -98,12 +98,14 @@ pub enum End {
 pub struct WatchReport {
     /// Why it ended.
     pub ended: End,
-    /// The frames that have a picture of their file as it is.
+    /// The frames that have a picture of their file as it is, or as it was before it was removed.
     pub drawn: Vec<FrameNumber>,
     /// The frames that are there but not drawn yet.
     pub pending: Vec<FrameNumber>,
     /// The frames that have no picture, and why.
     pub failures: Vec<(FrameNumber, RenderError)>,
+    /// Why frames may have come that were not seen.
+    pub trouble: Option<RenderError>,
     /// Whether it was to go on until something happened that has not.
     pub expected_more: bool,
     /// Pictures that were finished, several of a frame that was written again.
@@ -126,16 +128,7 @@ pub fn watch(
     let start = std::time::Instant::now();
     let mut report = match opening::open(path, options, observer)? {
         Ok((job, lookout)) => with_workers(&job, lookout)?,
-        Err(ended) => WatchReport {
-            ended,
-            drawn: Vec::new(),
-            pending: Vec::new(),
-            failures: Vec::new(),
-            expected_more: ended == End::Interrupted && options.expects_more(),
-            finished: 0,
-            seconds: 0.0,
-            places: None,
-        },
+        Err((ended, lookout)) => lookout.report(ended),
     };
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)

@@ -131,6 +131,66 @@ fn a_request_ends_it_and_says_what_is_left() {
     assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
 
+/// The exit code tells that the frame is bad; to wait for it would be to wait for ever.
+#[test]
+fn until_a_frame_that_is_bad_ends() {
+    let folder = Folder::with_scene(&scene(""));
+    let options = WatchOptions { until: Some(FrameNumber::from(2)), done_file: None, ..options(&folder) };
+    folder.write(&frame(1), contents(1));
+    folder.write(&frame(2), &contents(2)[..300]);
+    let report = watched(&folder, &options, &Witness::default());
+    assert_eq!((report.ended, report.drawn), (End::Until, numbers(&[1])));
+    assert_eq!(report.failures.iter().map(|(number, _)| *number).collect::<Vec<_>>(), numbers(&[2]));
+}
+
+/// Frame 2 is drawn and taken away before frame 1 comes.
+#[test]
+fn until_a_frame_that_is_drawn_and_gone_ends() {
+    let folder = Folder::with_scene(&scene("[frames]\npath = \"frames/*.ply\"\n"));
+    let options = WatchOptions { until: Some(FrameNumber::from(2)), done_file: None, ..options(&folder) };
+    folder.write(&frame(1), &contents(1)[..300]);
+    folder.write(&frame(2), contents(2));
+    let report = std::thread::scope(|scope| {
+        let watching = scope.spawn(|| watched(&folder, &options, &Witness::default()));
+        while !picture(&folder, 2).exists() {
+            std::thread::sleep(QUIET / 5);
+        }
+        std::fs::remove_file(folder.path(&frame(2))).unwrap();
+        folder.write(&frame(1), contents(1));
+        watching.join().unwrap()
+    });
+    assert_eq!((report.ended, report.drawn), (End::Until, numbers(&[1, 2])));
+}
+
+#[test]
+fn folders_of_times_have_the_done_file_above_them() {
+    let folder = Folder::with_scene(&scene("[frames]\npath = \"cut/*/surface.ply\"\n"));
+    folder.write("cut/1/surface.ply", contents(1));
+    folder.write("cut/2/surface.ply", contents(2));
+    folder.write("cut/DONE", "");
+    let options = WatchOptions { idle_timeout: Some(Duration::from_secs(20)), ..options(&folder) };
+    let report = watched(&folder, &options, &Witness::default());
+    assert_eq!((report.ended, report.drawn), (End::DoneFile, numbers(&[1, 2])));
+}
+
+/// Only `DONE` is as early as the frame; the floor comes within the patience.
+#[test]
+fn other_files_may_come_after_the_done_file() {
+    let surface =
+        "[[surfaces]]\nmesh = \"floor_####.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0.5 }\n";
+    let folder = Folder::with_scene(&scene(surface));
+    folder.write(&frame(1), contents(1));
+    folder.write("frames/DONE", "");
+    let options = options(&folder);
+    let report = std::thread::scope(|scope| {
+        let watching = scope.spawn(|| watched(&folder, &options, &Witness::default()));
+        std::thread::sleep(QUIET * 8);
+        folder.write("floor_0001.ply", contents(0));
+        watching.join().unwrap()
+    });
+    assert_eq!((report.ended, report.drawn), (End::DoneFile, numbers(&[1])));
+}
+
 #[test]
 fn other_files_that_come_later_are_waited_for() {
     let surface =

@@ -150,6 +150,14 @@ fn failures_wait_for_a_change_or_for_their_time() {
     assert_eq!(file.due(&rules()), Some(at(4500)));
 }
 
+/// A watch may be told to take no file for whole.
+#[test]
+fn the_longest_quiet_is_no_overflow() {
+    let rules = Rules::new(Duration::MAX);
+    assert_eq!(rules.patience(), Duration::MAX);
+    assert_eq!(Readiness::new(signature(9), at(1)).due(&rules), Some(Duration::MAX));
+}
+
 #[test]
 fn a_preview_leaves_the_file_wanted() {
     let mut file = Readiness::new(signature(9), at(0));

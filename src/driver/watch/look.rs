@@ -263,8 +263,10 @@ impl<'a> Watch<'a> {
     fn failed(&mut self, number: FrameNumber, signature: Signature, error: RenderError) {
         let (now, patience) = (self.lookout.now(), self.lookout.arrivals.rules().patience());
         let Some(arrival) = self.lookout.arrivals.get_mut(number) else { return };
-        let delay = patience * (1 << arrival.failures.min(MOST_DOUBLINGS));
-        arrival.readiness.failed(signature, may_pass(&error, &arrival.path).then_some(now + delay));
+        let delay = patience.saturating_mul(1 << arrival.failures.min(MOST_DOUBLINGS));
+        arrival
+            .readiness
+            .failed(signature, may_pass(&error, &arrival.path).then_some(now.saturating_add(delay)));
         arrival.failures += 1;
         arrival.failure = Some(error);
     }
@@ -288,6 +290,13 @@ impl<'a> Watch<'a> {
                 self.rate.count(now);
                 self.finished += 1;
             }
+        }
+        if self.lookout.arrivals.get_mut(done.number).is_none()
+            && !done.preview
+            && matches!(done.outcome, Some(Ok(_)))
+        {
+            self.lookout.arrivals.outlived(done.number);
+            self.finished += 1;
         }
         match done.outcome {
             Some(Ok(png)) => self.show(done.came, Some(&png)),
@@ -330,7 +339,8 @@ impl<'a> Watch<'a> {
     fn is_over(&self) -> Option<End> {
         let arrivals = &self.lookout.arrivals;
         if let Some(last) = self.lookout.options.until
-            && arrivals.is_drawn_up_to(last)
+            && arrivals.is_clear()
+            && arrivals.is_done_up_to(last)
             // Frames may come out of order: those that seem to be missing get a little time.
             && (!arrivals.has_gaps_before(last) || self.lookout.idle() >= arrivals.rules().patience())
         {
@@ -360,25 +370,12 @@ impl<'a> Watch<'a> {
         });
     }
 
-    fn report(mut self, ended: End) -> WatchReport {
-        let mut report = WatchReport {
-            ended,
-            drawn: Vec::new(),
-            pending: Vec::new(),
-            failures: Vec::new(),
-            expected_more: ended == End::Interrupted && self.lookout.options.expects_more(),
+    fn report(self, ended: End) -> WatchReport {
+        WatchReport {
             finished: self.finished,
-            seconds: 0.0,
             places: Some((self.pattern.into(), self.desk.report.ledger.clone())),
-        };
-        for (number, arrival) in self.lookout.arrivals.iter_mut() {
-            match arrival.failure.take() {
-                Some(error) => report.failures.push((number, error)),
-                None if arrival.is_settled() && arrival.drawn.is_some() => report.drawn.push(number),
-                None => report.pending.push(number),
-            }
+            ..self.lookout.report(ended)
         }
-        report
     }
 }
 

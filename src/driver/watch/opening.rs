@@ -29,6 +29,9 @@ struct Expected {
     needs_frame: bool,
 }
 
+/// An open scene and its frames as they come, or how it ended before that.
+type Opening<'a> = Result<(Job, Lookout<'a>), (End, Lookout<'a>)>;
+
 /// Waits until a scene can be opened; how it ended if it could not.
 ///
 /// # Errors
@@ -37,7 +40,7 @@ pub(super) fn open<'a>(
     path: &Path,
     options: &'a WatchOptions,
     observer: &'a dyn Observer,
-) -> Result<Result<(Job, Lookout<'a>), End>, RenderError> {
+) -> Result<Opening<'a>, RenderError> {
     let mut expected = expect(path)?;
     let mut lookout = Lookout::new(expected.base.clone(), &expected.pattern, options, observer);
     loop {
@@ -51,10 +54,10 @@ pub(super) fn open<'a>(
             return Ok(Ok((job, lookout)));
         }
         if options.render.interrupt.is_requested() {
-            return Ok(Err(End::Interrupted));
+            return Ok(Err((End::Interrupted, lookout)));
         }
         if let Some(end) = lookout.is_over() {
-            return Ok(Err(end));
+            return Ok(Err((end, lookout)));
         }
         tell(&lookout);
         let _ = lookout.pause();
