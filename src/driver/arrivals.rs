@@ -7,11 +7,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
+use std::ops::Bound;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::error::RenderError;
-use super::ready::{Readiness, Rules, Signature};
+use super::fingerprint::Fingerprint;
+use super::ready::{Others, Readiness, Rules, Signature};
 use crate::sequence::{FrameFile, FrameNumber, SequenceError, discover, gaps, listed_folder};
 
 /// Which frame is drawn first when several wait.
@@ -34,9 +36,9 @@ pub(super) struct Arrival {
     pub path: PathBuf,
     /// What is known about the file.
     pub readiness: Readiness,
-    /// The hash of the mesh that the frame's finished picture is of.
-    pub drawn: Option<String>,
-    /// The signature of the file that a preview was made of.
+    /// What the frame's finished picture is of.
+    pub drawn: Option<Fingerprint>,
+    /// The signature of the files that a preview was made of.
     pub previewed: Option<Signature>,
     /// Whether its picture is being finished.
     pub in_work: bool,
@@ -72,11 +74,14 @@ impl Arrival {
     }
 }
 
+/// The state of the other files that make a frame with its mesh.
+type OthersOf<'a> = Box<dyn Fn(FrameNumber, &Path) -> Others + 'a>;
+
 /// All frames that are there.
-#[derive(Debug)]
-pub(super) struct Arrivals {
+pub(super) struct Arrivals<'a> {
     base: PathBuf,
     pattern: String,
+    others: OthersOf<'a>,
     rules: Rules,
     frames: BTreeMap<FrameNumber, Arrival>,
     /// The frames that were drawn and are not there any more.
@@ -103,12 +108,13 @@ impl Trouble {
     }
 }
 
-impl Arrivals {
+impl<'a> Arrivals<'a> {
     /// Frames of a pattern relative to a folder; none before the first scan.
     pub fn new(base: &Path, pattern: &str, rules: Rules) -> Self {
         Self {
             base: base.into(),
             pattern: pattern.into(),
+            others: Box::new(|_, _| Others::default()),
             rules,
             frames: BTreeMap::new(),
             gone: BTreeSet::new(),
@@ -128,6 +134,16 @@ impl Arrivals {
         self.base == base && self.pattern == pattern
     }
 
+    /// What other files make a frame from now on.
+    pub fn look_beside(&mut self, others: impl Fn(FrameNumber, &Path) -> Others + 'a) {
+        self.others = Box::new(others);
+    }
+
+    /// The state of the other files that make a frame with a mesh.
+    pub fn others(&self, number: FrameNumber, mesh: &Path) -> Others {
+        (self.others)(number, mesh)
+    }
+
     /// When anything changed last.
     pub fn changed(&self) -> Duration {
         self.changed
@@ -136,6 +152,17 @@ impl Arrivals {
     /// A frame.
     pub fn get_mut(&mut self, number: FrameNumber) -> Option<&mut Arrival> {
         self.frames.get_mut(&number)
+    }
+
+    /// A frame as it is known.
+    pub fn get(&self, number: FrameNumber) -> Option<&Arrival> {
+        self.frames.get(&number)
+    }
+
+    /// The frame that follows another one.
+    pub fn after(&self, number: FrameNumber) -> Option<(FrameNumber, &Arrival)> {
+        let after = (Bound::Excluded(number), Bound::Unbounded);
+        self.frames.range(after).next().map(|(number, arrival)| (*number, arrival))
     }
 
     /// What the frames go by.
@@ -225,7 +252,8 @@ impl Arrivals {
             .into_iter()
             .filter_map(|file| {
                 let metadata = std::fs::metadata(&file.path).ok()?;
-                Some((file.number, (file.path, Signature::of(&metadata))))
+                let signature = Signature::of(&metadata).with(self.others(file.number, &file.path));
+                Some((file.number, (file.path, signature)))
             })
             .collect();
         let now = since + clock.elapsed();

@@ -8,6 +8,8 @@
 //! picture is of exactly those bytes, and a file that is written again later is drawn again. After a restart the hashes in
 //! the pictures tell what is still to be done. Whatever is wrong with one frame, the others go on.
 
+mod drawn;
+mod frame_files;
 mod look;
 mod lookout;
 mod opening;

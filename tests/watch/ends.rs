@@ -191,6 +191,81 @@ fn other_files_may_come_after_the_done_file() {
     assert_eq!((report.ended, report.drawn), (End::DoneFile, numbers(&[1])));
 }
 
+/// A floor that is whole in the end, but was half written, or another one, when the frame was drawn.
+#[test]
+fn other_files_that_change_are_drawn_again() {
+    let folder = Folder::with_scene(&scene(
+        "[[surfaces]]\nmesh = \"floor_####.obj\"\nmaterial = { kind = \"diffuse\", reflectance = 0.5 }\n",
+    ));
+    let floor = |z: f64| format!("v -9 -9 {z}\nv 9 -9 {z}\nv 9 9 {z}\nv -9 9 {z}\nf 1 2 3\nf 1 3 4\n");
+    folder.write("floor_0001.obj", floor(-1.5));
+    folder.write(&frame(1), contents(1));
+    let options = options(&folder);
+    let report = std::thread::scope(|scope| {
+        let watching = scope.spawn(|| watched(&folder, &options, &Witness::default()));
+        while !picture(&folder, 1).exists() {
+            std::thread::sleep(QUIET / 5);
+        }
+        folder.write("floor_0001.obj", floor(-1.2));
+        folder.write("frames/DONE", "");
+        watching.join().unwrap()
+    });
+    assert_eq!((report.ended, report.drawn, report.finished), (End::DoneFile, numbers(&[1]), 2));
+    let watched = folder.read("out/frame_0001.exr");
+    folder.render(floe::driver::RenderOptions::default());
+    assert!(watched == folder.read("out/frame_0001.exr"), "a picture of the floor that was");
+}
+
+/// The velocities come after the mesh, and the picture has them.
+#[test]
+fn velocities_beside_a_mesh_that_come_later_are_in_the_picture() {
+    let camera = "[camera]\neye = [0.4, -4, 0.9]\ntarget = [0, 0, 0]\nresolution = [16, 9]\nshutter = 0.5\n";
+    let frames = "[frames]\npath = \"frames/######.bobj\"\n";
+    let folder = Folder::with_scene(&scene(&format!("{camera}{frames}")));
+    let mesh = super::small::cube();
+    let vectors = |list: Vec<[f32; 3]>| {
+        let numbers = list.as_flattened().iter().flat_map(|c| c.to_le_bytes());
+        [(list.len() as u32).to_le_bytes().to_vec(), numbers.collect()].concat()
+    };
+    let indices = mesh.triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes());
+    let triangles = [(mesh.triangles.len() as u32).to_le_bytes().to_vec(), indices.collect()].concat();
+    let corners: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+    let velocities = [vectors(vec![[9.0, 0.0, 0.0]; corners.len()]), 0u32.to_le_bytes().to_vec()].concat();
+    folder.write("frames/000001.bobj", [vectors(corners), triangles].concat());
+    let options = options(&folder);
+    std::thread::scope(|scope| {
+        let watching = scope.spawn(|| watched(&folder, &options, &Witness::default()));
+        std::thread::sleep(QUIET * 6);
+        folder.write("frames/velocity000001.bobj", velocities);
+        folder.write("frames/DONE", "");
+        assert_eq!(watching.join().unwrap().ended, End::DoneFile);
+    });
+    let watched = folder.read("out/frame_0001.exr");
+    folder.render(floe::driver::RenderOptions::default());
+    assert!(watched == folder.read("out/frame_0001.exr"), "a picture without velocities");
+}
+
+/// What `floe render` drew with the motion to the next frame, a watch does not draw without it.
+#[test]
+fn pictures_with_motion_stay() {
+    let folder = Folder::with_scene(&scene(
+        "[camera]\neye = [0.4, -4, 0.9]\ntarget = [0, 0, 0]\nresolution = [16, 9]\nshutter = 0.5\n\
+         [frames]\npath = \"frames/frame_####.ply\"\nvelocity = \"frames\"\n",
+    ));
+    for number in 0..3 {
+        folder.write(&frame(number), contents(number));
+    }
+    folder.write("frames/DONE", "");
+    folder.render(floe::driver::RenderOptions::default());
+    let watch = || watched(&folder, &options(&folder), &Witness::default());
+    assert_eq!(watch().finished, 0);
+    // Without the last frame nobody can say what the one before it moved to; with another one it can be said.
+    std::fs::remove_file(folder.path(&frame(2))).unwrap();
+    assert_eq!(watch().finished, 0);
+    folder.write(&frame(1), contents(7));
+    assert_eq!(watch().finished, 2);
+}
+
 #[test]
 fn other_files_that_come_later_are_waited_for() {
     let surface =

@@ -4,7 +4,7 @@ use super::*;
 
 const QUIET: Duration = Duration::from_millis(10);
 
-fn arrivals(folder: &Path, pattern: &str) -> Arrivals {
+fn arrivals(folder: &Path, pattern: &str) -> Arrivals<'static> {
     Arrivals::new(folder, pattern, Rules::new(QUIET))
 }
 
@@ -47,7 +47,7 @@ fn a_drawn_frame_counts_when_its_file_is_gone() {
     assert!(!arrivals.is_done_up_to(number(3)));
     for n in [1, 3] {
         let arrival = arrivals.get_mut(number(n)).unwrap();
-        arrival.drawn = Some("hash".into());
+        arrival.drawn = Some(Fingerprint([0; 16]));
         arrival.readiness.drawn(arrival.readiness.signature());
     }
     for n in 1..=3 {

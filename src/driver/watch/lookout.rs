@@ -20,7 +20,7 @@ const SHARE: u32 = 20;
 
 /// The frames of a folder, as they come.
 pub(super) struct Lookout<'a> {
-    pub arrivals: Arrivals,
+    pub arrivals: Arrivals<'a>,
     pub observer: &'a dyn Observer,
     pub options: &'a WatchOptions,
     start: Instant,

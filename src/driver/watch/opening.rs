@@ -14,7 +14,7 @@ use crate::driver::error::RenderError;
 use crate::driver::job::{Job, SceneFile, find_scene};
 use crate::driver::ready::{Look, Verdict};
 use crate::driver::render::Observer;
-use crate::driver::whole::{Inspected, inspect};
+use crate::driver::whole::{Inspected, Traits, inspect};
 use crate::mesh::{MeshError, RawMesh, VelocityName};
 use crate::scene::FrameError;
 use crate::scene::description::SceneDescription;
@@ -100,7 +100,7 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
         |(before, _, after)| (*before, *after),
     );
     let inspected = match read {
-        Ok((_, bytes, _)) => inspect(&bytes, &arrival.path, &VelocityName::Nothing, None),
+        Ok((_, bytes, _)) => inspect(&bytes, &arrival.path, &VelocityName::Nothing, Traits::default()),
         Err(source) => Err(MeshError::Io { path: arrival.path.clone(), source }),
     };
     let found = inspected.as_ref().ok().map(|inspected| inspected.proof);

@@ -14,7 +14,7 @@ use super::wake::News;
 use crate::driver::ahead::{Preparation, Ready, timed};
 use crate::driver::arrivals::Came;
 use crate::driver::error::RenderError;
-use crate::driver::fingerprint::Identity;
+use crate::driver::fingerprint::{Fingerprint, Identity};
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::ledger::FrameRecord;
 use crate::driver::picture::picture_path;
@@ -37,7 +37,7 @@ pub(super) struct Commission {
     pub inputs: Inputs,
     /// What picture this makes.
     pub identity: Identity,
-    /// The signature of the file.
+    /// The signature of its files.
     pub signature: Signature,
     /// When it came.
     pub came: Came,
@@ -51,9 +51,9 @@ pub(super) struct Done {
     pub number: FrameNumber,
     /// Whether it is a preview.
     pub preview: bool,
-    /// The hash of the mesh.
-    pub mesh_hash: String,
-    /// The signature of its file.
+    /// What the picture is of.
+    pub fingerprint: Fingerprint,
+    /// The signature of its files.
     pub signature: Signature,
     /// When it came.
     pub came: Came,
@@ -114,7 +114,7 @@ impl Easel<'_> {
         let mut latest: Option<Assembled> = None;
         while let Ok(commission) = commissions.recv() {
             let Commission { task, mesh, inputs, identity, signature, came, read_seconds } = commission;
-            let mesh_hash = identity.mesh_hash.clone();
+            let fingerprint = identity.fingerprint;
             let mut preparation = Preparation { read_seconds, ..Preparation::default() };
             let previous = latest.take();
             let prepared = self.pool.install(|| {
@@ -135,7 +135,7 @@ impl Easel<'_> {
                 Err(error) => self.draw(&task, Err(error.into()), preparation),
             };
             let preview = self.observer.preview;
-            let done = Done { number: task.number, preview, mesh_hash, signature, came, outcome };
+            let done = Done { number: task.number, preview, fingerprint, signature, came, outcome };
             self.observer.rest();
             let _ = news.send(News::Done(Box::new(done)));
         }
