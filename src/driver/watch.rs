@@ -13,6 +13,7 @@ mod frame_files;
 mod look;
 mod lookout;
 mod opening;
+mod showcase;
 mod status;
 mod wake;
 mod worker;
@@ -27,10 +28,12 @@ pub use super::arrivals::Order;
 
 use self::look::Watch;
 use self::lookout::Lookout;
+use self::showcase::Showcase;
 use self::wake::News;
 use self::worker::{Easel, Tagged, Worker};
 use super::ahead::Pools;
 use super::error::RenderError;
+use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::render::{Observer, RenderOptions, check_pictures};
 use super::session::Session;
@@ -147,11 +150,18 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
              draw the pictures again with `floe render --resume` when all frames are there",
         );
     }
-    let samples = options.render.settings(&job.world.description.render).samples;
+    let scene = &job.world.description.render;
+    let settings = options.render.settings(scene);
+    // A session tells it of several frames, and does not know yet that there will be.
+    if let Some(text) = FrameSeeds::new(scene, settings.seed, settings.samples).overlap() {
+        observer.warning(&text);
+    }
+    let samples = settings.samples;
     let previews = preview_samples(options.preview_samples, samples);
     let finished_options = RenderOptions { samples: Some(samples), resume: true, ..options.render.clone() };
     let preview_options = RenderOptions { samples: previews, ..options.render.clone() };
-    let workshop = Workshop { job, pattern: &pattern };
+    let showcase = Showcase::default();
+    let workshop = Workshop { job, pattern: &pattern, showcase: &showcase };
     let finishing = Tagged::new(observer, false);
     let previewing = Tagged::new(observer, true);
     std::thread::scope(|scope| {
@@ -182,6 +192,7 @@ fn preview_samples(asked: Option<u32>, samples: u32) -> Option<u32> {
 struct Workshop<'a> {
     job: &'a Job,
     pattern: &'a str,
+    showcase: &'a Showcase,
 }
 
 impl<'a> Workshop<'a> {
@@ -208,7 +219,7 @@ impl<'a> Workshop<'a> {
         let pool = Pools::render_only(options.threads)?;
         Ok(Worker::start(
             scope,
-            Easel { job: self.job, session, pattern: self.pattern, pool, observer },
+            Easel { job: self.job, session, pattern: self.pattern, showcase: self.showcase, pool, observer },
             news,
         ))
     }

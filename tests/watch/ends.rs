@@ -77,6 +77,9 @@ fn a_folder_that_is_not_there_yet_gets_a_scene_from_its_first_whole_frame() {
     let waited =
         phases.iter().any(|s| matches!(&s.phase, Phase::Waiting(what) if what.starts_with("the folder")));
     assert!(waited, "{phases:?}");
+    let warnings = witness.warnings.lock().unwrap();
+    let told = |text: &&String| text.contains("frames frame 1,") && text.contains("write eye = [");
+    assert_eq!(warnings.iter().filter(told).count(), 1, "{warnings:?}");
     let watched: Vec<Vec<u8>> = [1, 2].map(|n| std::fs::read(picture(&folder, n)).unwrap()).into();
     let job = floe::driver::Job::open(&path).unwrap();
     let again = floe::driver::RenderOptions { output: Some(output), samples: Some(2), ..Default::default() };
@@ -100,6 +103,18 @@ fn until_waits_for_gaps_a_little_and_for_the_frame_as_long_as_it_takes() {
         watching.join().unwrap()
     });
     assert_eq!((report.ended, report.drawn), (End::Until, numbers(&[0, 1, 2, 3])));
+}
+
+#[test]
+fn samples_that_frames_would_share_are_told() {
+    let folder = Folder::with_scene(&scene("[render]\nsamples = 4\nseed_mode = \"sequence\"\n"));
+    folder.write("frames/DONE", "");
+    let mut options = options(&folder);
+    options.render.samples = Some(16);
+    let witness = Witness::default();
+    watched(&folder, &options, &witness);
+    let warnings = witness.warnings.lock().unwrap();
+    assert_eq!(warnings.iter().filter(|text| text.contains("16 samples a pixel reach")).count(), 1);
 }
 
 #[test]

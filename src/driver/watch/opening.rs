@@ -17,7 +17,8 @@ use crate::driver::render::Observer;
 use crate::driver::whole::{Inspected, Traits, inspect};
 use crate::mesh::{MeshError, RawMesh, VelocityName};
 use crate::scene::FrameError;
-use crate::scene::description::SceneDescription;
+use crate::scene::description::{Placement, SceneDescription};
+use crate::sequence::FrameNumber;
 
 /// Which frames are waited for.
 struct Expected {
@@ -49,8 +50,11 @@ pub(super) fn open<'a>(
             return Ok(Ok((Job::open_on(path, &none)?, lookout)));
         }
         lookout.scan()?;
-        if let Some(mesh) = first_frame(&mut lookout) {
+        if let Some((number, mesh)) = first_frame(&mut lookout) {
             let job = Job::open_on(path, &|_: &Path, _: &str| Ok(mesh.clone()))?;
+            if expected.has_scene {
+                warn_of_camera(&job, number, observer);
+            }
             return Ok(Ok((job, lookout)));
         }
         if options.render.interrupt.is_requested() {
@@ -87,7 +91,7 @@ fn expect(path: &Path) -> Result<Expected, RenderError> {
 }
 
 /// The mesh of the lowest frame that is whole; the frame stays to be drawn.
-fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
+fn first_frame(lookout: &mut Lookout<'_>) -> Option<(FrameNumber, RawMesh)> {
     let now = lookout.now();
     let rules = lookout.arrivals.rules();
     let number = lookout.arrivals.next(Order::Oldest, now, |_, _| true)?;
@@ -108,7 +112,7 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
     match (arrival.readiness.judge(&look, &rules), inspected) {
         (Verdict::Accepted, Ok(Inspected { mesh, .. })) => {
             arrival.readiness.wanted_again(&look);
-            return Some(mesh);
+            return Some((number, mesh));
         }
         (Verdict::Refused, Err(error)) => {
             lookout.observer.warning(&format!("frame {number}: {error}"));
@@ -118,6 +122,17 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
         _ => {}
     }
     None
+}
+
+/// Another watch may see another frame first, and draw everything again from elsewhere.
+fn warn_of_camera(job: &Job, number: FrameNumber, observer: &dyn Observer) {
+    let scene = &job.world.description;
+    let Some(Placement { eye, target }) = scene.camera.placement else { return };
+    observer.warning(&format!(
+        "{}: the camera frames frame {number}, the first that was whole; to have the same view whichever comes first, \
+         write eye = {eye} and target = {target} into [camera]",
+        scene.file.display()
+    ));
 }
 
 fn tell(lookout: &Lookout<'_>) {
