@@ -34,7 +34,7 @@ pub struct WatchArguments {
     /// Which frame is drawn first when several wait
     #[arg(long, value_enum, default_value_t)]
     order: Queue,
-    /// End when this frame is drawn, and those before it that are there
+    /// End when this frame is drawn or bad, and those before it that are there
     #[arg(long, value_name = "FRAME", allow_hyphen_values = true)]
     until: Option<FrameNumber>,
     /// End when all is drawn and nothing has changed for so long
@@ -90,11 +90,8 @@ pub fn run(arguments: &WatchArguments) -> Exit {
     match report {
         Ok(report) => {
             let printed = print(&summary(&report));
-            report
-                .failures
-                .iter()
-                .map(|(_, error)| Exit::from(error))
-                .fold(printed.max(ended(&report)), Exit::max)
+            let failures = report.failures.iter().map(|(_, error)| error).chain(&report.trouble);
+            failures.map(Exit::from).fold(printed.max(ended(&report)), Exit::max)
         }
         Err(error) => {
             say(&format!("error: {error}"));
@@ -171,7 +168,7 @@ fn ended(report: &WatchReport) -> Exit {
 
 fn summary(report: &WatchReport) -> String {
     let why = match report.ended {
-        End::Until => "the last frame is drawn",
+        End::Until => "the last frame is done",
         End::DoneFile => "the simulation is done",
         End::Idle => "nothing has changed for a while",
         End::Interrupted => "stopped",

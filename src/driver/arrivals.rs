@@ -1,17 +1,20 @@
 //! The frames of a sequence that is still being written: which are there, which may be looked at, what is drawn of them.
 //!
 //! A scan lists the folder and takes each file's signature; it reads nothing. What it cannot list (no folder yet, no
-//! frames, two sequences in one folder for a while) changes nothing about the frames that are known.
+//! frames, two sequences in one folder for a while) changes nothing about the frames that are known; and as long as what
+//! comes cannot be seen, a watch is not complete.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
+use std::ops::Bound;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::error::RenderError;
-use super::ready::{Readiness, Rules, Signature};
-use crate::sequence::{FrameFile, FrameNumber, SequenceError, discover, gaps};
+use super::fingerprint::Fingerprint;
+use super::ready::{Others, Readiness, Rules, Signature};
+use crate::sequence::{FrameFile, FrameNumber, SequenceError, discover, gaps, listed_folder};
 
 /// Which frame is drawn first when several wait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,9 +36,9 @@ pub(super) struct Arrival {
     pub path: PathBuf,
     /// What is known about the file.
     pub readiness: Readiness,
-    /// The hash of the mesh that the frame's finished picture is of.
-    pub drawn: Option<String>,
-    /// The signature of the file that a preview was made of.
+    /// What the frame's finished picture is of.
+    pub drawn: Option<Fingerprint>,
+    /// The signature of the files that a preview was made of.
     pub previewed: Option<Signature>,
     /// Whether its picture is being finished.
     pub in_work: bool,
@@ -64,33 +67,57 @@ impl Arrival {
         self.failures = 0;
     }
 
-    /// Whether it is drawn as it is, or told to be bad.
+    /// Whether it is drawn as it is, or told to be bad. Files beside it may be a moment late: what may pass is tried twice.
     pub fn is_settled(&self) -> bool {
-        self.readiness.is_settled() && !self.in_work
+        let is_tried_again = self.failures == 1 && self.readiness.is_retried();
+        self.readiness.is_settled() && !self.in_work && !is_tried_again
     }
 }
 
+/// The state of the other files that make a frame with its mesh.
+type OthersOf<'a> = Box<dyn Fn(FrameNumber, &Path) -> Others + 'a>;
+
 /// All frames that are there.
-#[derive(Debug)]
-pub(super) struct Arrivals {
+pub(super) struct Arrivals<'a> {
     base: PathBuf,
     pattern: String,
+    others: OthersOf<'a>,
     rules: Rules,
     frames: BTreeMap<FrameNumber, Arrival>,
+    /// The frames that were drawn and are not there any more.
+    gone: BTreeSet<FrameNumber>,
     /// When a file came, changed or went away.
     changed: Duration,
-    /// Why the folder could not be listed, since when, and whether that was told.
-    trouble: Option<(String, Duration, bool)>,
+    /// What is wrong with the folder now.
+    trouble: Option<Trouble>,
 }
 
-impl Arrivals {
+/// A folder of which nobody can say what its frames are.
+#[derive(Debug)]
+struct Trouble {
+    error: SequenceError,
+    since: Duration,
+    is_told: bool,
+}
+
+impl Trouble {
+    /// What the user has to know, once.
+    fn tell(&mut self) -> Option<String> {
+        let text = format!("{}; until that is mended no other frame is seen", self.error);
+        (!std::mem::replace(&mut self.is_told, true)).then_some(text)
+    }
+}
+
+impl<'a> Arrivals<'a> {
     /// Frames of a pattern relative to a folder; none before the first scan.
     pub fn new(base: &Path, pattern: &str, rules: Rules) -> Self {
         Self {
             base: base.into(),
             pattern: pattern.into(),
+            others: Box::new(|_, _| Others::default()),
             rules,
             frames: BTreeMap::new(),
+            gone: BTreeSet::new(),
             changed: Duration::ZERO,
             trouble: None,
         }
@@ -98,18 +125,23 @@ impl Arrivals {
 
     /// The folder that the files are in.
     pub fn folder(&self) -> PathBuf {
-        let whole = self.base.join(&self.pattern);
-        let folder = if self.pattern.is_empty() || whole.is_dir() {
-            self.base.join(&self.pattern)
-        } else {
-            whole.parent().map_or_else(PathBuf::new, Path::to_owned)
-        };
+        let folder = listed_folder(&self.base, &self.pattern);
         if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder }
     }
 
     /// Whether these are the frames of a pattern relative to a folder.
     pub fn is_of(&self, base: &Path, pattern: &str) -> bool {
         self.base == base && self.pattern == pattern
+    }
+
+    /// What other files make a frame from now on.
+    pub fn look_beside(&mut self, others: impl Fn(FrameNumber, &Path) -> Others + 'a) {
+        self.others = Box::new(others);
+    }
+
+    /// The state of the other files that make a frame with a mesh.
+    pub fn others(&self, number: FrameNumber, mesh: &Path) -> Others {
+        (self.others)(number, mesh)
     }
 
     /// When anything changed last.
@@ -120,6 +152,17 @@ impl Arrivals {
     /// A frame.
     pub fn get_mut(&mut self, number: FrameNumber) -> Option<&mut Arrival> {
         self.frames.get_mut(&number)
+    }
+
+    /// A frame as it is known.
+    pub fn get(&self, number: FrameNumber) -> Option<&Arrival> {
+        self.frames.get(&number)
+    }
+
+    /// The frame that follows another one.
+    pub fn after(&self, number: FrameNumber) -> Option<(FrameNumber, &Arrival)> {
+        let after = (Bound::Excluded(number), Bound::Unbounded);
+        self.frames.range(after).next().map(|(number, arrival)| (*number, arrival))
     }
 
     /// What the frames go by.
@@ -161,31 +204,46 @@ impl Arrivals {
                 self.take(Vec::new(), now, clock);
                 Ok(None)
             }
-            Err(SequenceError::Io { source, .. }) if nothing(&source) => Ok(None),
+            Err(SequenceError::Io { source, .. }) if nothing(&source) => {
+                self.trouble = None;
+                Ok(None)
+            }
             Err(error @ SequenceError::Pattern { .. }) => Err(error),
             Err(error) => {
                 let known =
                     self.frames.iter().map(|(number, a)| FrameFile { number: *number, path: a.path.clone() });
                 self.take(known.collect(), now, clock);
-                Ok(self.complain(error.to_string(), now))
+                Ok(self.complain(error, now))
             }
         }
     }
 
     /// A folder may be in disorder for a moment, such as while a file is replaced by its compressed form.
-    fn complain(&mut self, text: String, now: Duration) -> Option<String> {
+    fn complain(&mut self, error: SequenceError, now: Duration) -> Option<String> {
         let patience = self.rules.patience();
         match &mut self.trouble {
-            Some((known, since, told)) if *known == text => {
-                let is_time = !*told && now.saturating_sub(*since) >= patience;
-                *told |= is_time;
-                is_time.then_some(text)
+            Some(trouble) if trouble.error.to_string() == error.to_string() => {
+                let is_time = now.saturating_sub(trouble.since) >= patience;
+                is_time.then(|| trouble.tell()).flatten()
             }
-            trouble => {
-                *trouble = Some((text, now, false));
+            _ => {
+                self.changed = now;
+                self.trouble = Some(Trouble { error, since: now, is_told: false });
                 None
             }
         }
+    }
+
+    /// Whether it is known which files are frames.
+    pub fn is_clear(&self) -> bool {
+        self.trouble.is_none()
+    }
+
+    /// Why nobody can say which files are frames, at the end; and that in words if it was not told yet.
+    pub fn take_trouble(&mut self) -> Option<(SequenceError, Option<String>)> {
+        let mut trouble = self.trouble.take()?;
+        let text = trouble.tell();
+        Some((trouble.error, text))
     }
 
     /// `since` is when the listing began; what is new may be so only since its signature was taken.
@@ -194,12 +252,21 @@ impl Arrivals {
             .into_iter()
             .filter_map(|file| {
                 let metadata = std::fs::metadata(&file.path).ok()?;
-                Some((file.number, (file.path, Signature::of(&metadata))))
+                let signature = Signature::of(&metadata).with(self.others(file.number, &file.path));
+                Some((file.number, (file.path, signature)))
             })
             .collect();
         let now = since + clock.elapsed();
         let before = self.frames.len();
-        self.frames.retain(|number, _| there.contains_key(number));
+        let gone = &mut self.gone;
+        self.frames.retain(|number, arrival| {
+            let is_there = there.contains_key(number);
+            if !is_there && arrival.drawn.is_some() {
+                gone.insert(*number);
+            }
+            is_there
+        });
+        self.gone.retain(|number| !there.contains_key(number));
         let mut any_change = self.frames.len() < before;
         for (number, (path, signature)) in there {
             match self.frames.get_mut(&number) {
@@ -255,17 +322,28 @@ impl Arrivals {
         self.frames.values().all(Arrival::is_settled)
     }
 
-    /// Whether a frame is drawn as it is, and so is every one before it that is there and not bad.
-    pub fn is_drawn_up_to(&self, last: FrameNumber) -> bool {
-        self.frames.get(&last).is_some_and(|a| a.drawn.is_some() && a.failure.is_none())
+    /// A picture was finished of a file that is not there any more.
+    pub fn outlived(&mut self, number: FrameNumber) {
+        self.gone.insert(number);
+    }
+
+    /// The frames that were drawn and are not there any more.
+    pub fn gone(&self) -> &BTreeSet<FrameNumber> {
+        &self.gone
+    }
+
+    /// Whether a frame is drawn or bad as it is, and so is every one before it that is there.
+    pub fn is_done_up_to(&self, last: FrameNumber) -> bool {
+        (self.frames.contains_key(&last) || self.gone.contains(&last))
             && self.frames.range(..=last).all(|(_, arrival)| arrival.is_settled())
     }
 
     /// Whether frames before `last` are not there that the steps of the others suggest.
     pub fn has_gaps_before(&self, last: FrameNumber) -> bool {
         let file = |number: &FrameNumber| FrameFile { number: *number, path: PathBuf::new() };
-        let files: Vec<FrameFile> = self.frames.range(..=last).map(|(number, _)| file(number)).collect();
-        !gaps(&files).is_empty()
+        let there = self.frames.range(..=last).map(|(number, _)| number);
+        let known: BTreeSet<&FrameNumber> = there.chain(self.gone.range(..=last)).collect();
+        !gaps(&known.into_iter().map(file).collect::<Vec<_>>()).is_empty()
     }
 }
 
@@ -274,9 +352,19 @@ pub(super) fn read_signed(path: &Path) -> io::Result<(Signature, Vec<u8>, Option
     // Opening asks network file systems for what the file is now; a listing may be a minute old.
     let mut file = File::open(path)?;
     let before = Signature::of(&file.metadata()?);
-    let mut bytes = Vec::with_capacity(usize::try_from(before.size).unwrap_or(0));
+    let mut bytes = room_for(before.size)?;
     file.read_to_end(&mut bytes)?;
     let after = std::fs::metadata(path).ok().map(|metadata| Signature::of(&metadata));
     let is_whole = bytes.len() as u64 == before.size;
     Ok((before, bytes, after.filter(|_| is_whole)))
 }
+
+/// A file may say that it is larger than any memory, such as one with holes.
+fn room_for(size: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let room = usize::try_from(size).ok().and_then(|size| bytes.try_reserve_exact(size).ok());
+    room.map(|()| bytes).ok_or_else(|| ErrorKind::OutOfMemory.into())
+}
+
+#[cfg(test)]
+mod tests;

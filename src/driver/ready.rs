@@ -13,10 +13,12 @@
 //! The driver's loop reads, this module only decides; times are since any fixed moment.
 
 use std::fs::Metadata;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
 /// What tells two states of a file apart without reading it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Signature {
     /// Bytes.
     pub size: u64,
@@ -26,6 +28,8 @@ pub struct Signature {
     pub changed: (i64, i64),
     /// Device and number of the file, which differ when another file takes its name. 0 where there are none.
     pub identity: (u64, u64),
+    /// The same of the other files of the frame.
+    pub others: Others,
 }
 
 impl Signature {
@@ -38,13 +42,43 @@ impl Signature {
         };
         #[cfg(not(unix))]
         let (changed, identity) = ((0, 0), (0, 0));
-        Self { size: metadata.len(), modified: metadata.modified().ok(), changed, identity }
+        let others = Others::default();
+        Self { size: metadata.len(), modified: metadata.modified().ok(), changed, identity, others }
+    }
+
+    /// The same, of a file that makes a frame with others.
+    pub fn with(self, others: Others) -> Self {
+        Self { others, ..self }
     }
 
     /// Whether its times are whole seconds: such a file system may hide what is written within the second.
     fn is_coarse(&self) -> bool {
         let since_epoch = self.modified.and_then(|time| time.duration_since(SystemTime::UNIX_EPOCH).ok());
-        self.changed.1 == 0 && since_epoch.is_none_or(|time| time.subsec_nanos() == 0)
+        self.others.is_coarse
+            || self.changed.1 == 0 && since_epoch.is_none_or(|time| time.subsec_nanos() == 0)
+    }
+}
+
+/// What tells two states of several files apart, whether they are there or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Others {
+    /// Of all names and signatures; 0 of no files.
+    hash: u64,
+    is_coarse: bool,
+}
+
+impl Others {
+    /// Of the files of these names.
+    pub fn of(paths: &[PathBuf]) -> Self {
+        if paths.is_empty() {
+            return Self::default();
+        }
+        let signature = |path: &PathBuf| std::fs::metadata(path).ok().map(|found| Signature::of(&found));
+        let signatures: Vec<_> = paths.iter().map(|path| (path, signature(path))).collect();
+        let mut hasher = DefaultHasher::new();
+        signatures.hash(&mut hasher);
+        let is_coarse = signatures.iter().filter_map(|(_, found)| *found).any(|found| found.is_coarse());
+        Self { hash: hasher.finish(), is_coarse }
     }
 }
 
@@ -69,7 +103,7 @@ pub struct Rules([Duration; 3]);
 impl Rules {
     /// Rules by the least time of quiet.
     pub fn new(quiet: Duration) -> Self {
-        Self([quiet, quiet * 4, quiet * 20])
+        Self([quiet, quiet.saturating_mul(4), quiet.saturating_mul(20)])
     }
 
     /// How long a file has to be quiet before it is looked at.
@@ -164,10 +198,15 @@ impl Readiness {
     /// When the file is to be looked at; `None` when there is nothing to be done before it changes.
     pub fn due(&self, rules: &Rules) -> Option<Duration> {
         match self.stage {
-            Stage::Changing(step) => Some(self.since + rules.step(step, &self.signature)),
+            Stage::Changing(step) => Some(self.since.saturating_add(rules.step(step, &self.signature))),
             Stage::Failed(again) => again,
             Stage::Refused | Stage::Accepted => None,
         }
+    }
+
+    /// Whether it is to be looked at again although it did not change, after a failure that may pass.
+    pub fn is_retried(&self) -> bool {
+        matches!(self.stage, Stage::Failed(Some(_)))
     }
 
     /// Whether everything is said about the file as it is.

@@ -8,9 +8,12 @@
 //! picture is of exactly those bytes, and a file that is written again later is drawn again. After a restart the hashes in
 //! the pictures tell what is still to be done. Whatever is wrong with one frame, the others go on.
 
+mod drawn;
+mod frame_files;
 mod look;
 mod lookout;
 mod opening;
+mod showcase;
 mod status;
 mod wake;
 mod worker;
@@ -25,10 +28,12 @@ pub use super::arrivals::Order;
 
 use self::look::Watch;
 use self::lookout::Lookout;
+use self::showcase::Showcase;
 use self::wake::News;
 use self::worker::{Easel, Tagged, Worker};
 use super::ahead::Pools;
 use super::error::RenderError;
+use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::render::{Observer, RenderOptions, check_pictures};
 use super::session::Session;
@@ -41,7 +46,7 @@ pub struct WatchOptions {
     pub render: RenderOptions,
     /// Which frame is drawn first when several wait.
     pub order: Order,
-    /// Ends when this frame is drawn, and those before it that are there.
+    /// Ends when this frame is drawn or bad, and those before it that are there.
     pub until: Option<FrameNumber>,
     /// Ends when all is drawn and nothing has changed for so long.
     pub idle_timeout: Option<Duration>,
@@ -98,12 +103,14 @@ pub enum End {
 pub struct WatchReport {
     /// Why it ended.
     pub ended: End,
-    /// The frames that have a picture of their file as it is.
+    /// The frames that have a picture of their file as it is, or as it was before it was removed.
     pub drawn: Vec<FrameNumber>,
     /// The frames that are there but not drawn yet.
     pub pending: Vec<FrameNumber>,
     /// The frames that have no picture, and why.
     pub failures: Vec<(FrameNumber, RenderError)>,
+    /// Why frames may have come that were not seen.
+    pub trouble: Option<RenderError>,
     /// Whether it was to go on until something happened that has not.
     pub expected_more: bool,
     /// Pictures that were finished, several of a frame that was written again.
@@ -126,16 +133,7 @@ pub fn watch(
     let start = std::time::Instant::now();
     let mut report = match opening::open(path, options, observer)? {
         Ok((job, lookout)) => with_workers(&job, lookout)?,
-        Err(ended) => WatchReport {
-            ended,
-            drawn: Vec::new(),
-            pending: Vec::new(),
-            failures: Vec::new(),
-            expected_more: ended == End::Interrupted && options.expects_more(),
-            finished: 0,
-            seconds: 0.0,
-            places: None,
-        },
+        Err((ended, lookout)) => lookout.report(ended),
     };
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -152,11 +150,18 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
              draw the pictures again with `floe render --resume` when all frames are there",
         );
     }
-    let samples = options.render.settings(&job.world.description.render).samples;
+    let scene = &job.world.description.render;
+    let settings = options.render.settings(scene);
+    // A session tells it of several frames, and does not know yet that there will be.
+    if let Some(text) = FrameSeeds::new(scene, settings.seed, settings.samples).overlap() {
+        observer.warning(&text);
+    }
+    let samples = settings.samples;
     let previews = preview_samples(options.preview_samples, samples);
     let finished_options = RenderOptions { samples: Some(samples), resume: true, ..options.render.clone() };
     let preview_options = RenderOptions { samples: previews, ..options.render.clone() };
-    let workshop = Workshop { job, pattern: &pattern };
+    let showcase = Showcase::default();
+    let workshop = Workshop { job, pattern: &pattern, showcase: &showcase };
     let finishing = Tagged::new(observer, false);
     let previewing = Tagged::new(observer, true);
     std::thread::scope(|scope| {
@@ -187,6 +192,7 @@ fn preview_samples(asked: Option<u32>, samples: u32) -> Option<u32> {
 struct Workshop<'a> {
     job: &'a Job,
     pattern: &'a str,
+    showcase: &'a Showcase,
 }
 
 impl<'a> Workshop<'a> {
@@ -213,7 +219,7 @@ impl<'a> Workshop<'a> {
         let pool = Pools::render_only(options.threads)?;
         Ok(Worker::start(
             scope,
-            Easel { job: self.job, session, pattern: self.pattern, pool, observer },
+            Easel { job: self.job, session, pattern: self.pattern, showcase: self.showcase, pool, observer },
             news,
         ))
     }

@@ -6,6 +6,8 @@
 //! | the file | what a cut or unwritten end looks like | proof |
 //! |---|---|---|
 //! | gzip | its checksum fails | proven |
+//! | `.bobj`, `.vtp` | another length than its count says, or no end tag | proven |
+//! | binary STL, whose last byte is 0 | another length than its count says | plausible |
 //! | PLY, vertices before faces | too few elements; faces of no corners | proven |
 //! | ... its last byte is 0 | maybe the last face, partly unwritten | plausible |
 //! | ... as text, without a line break at its end | maybe the last number lacks digits | plausible |
@@ -14,10 +16,14 @@
 //! | OBJ, `.dsc` | fewer faces | plausible |
 //! | ... without a line break at its end | a number that lacks digits | doubtful |
 //! | ... open, or with unused vertices, unlike the frame before | faces are missing | doubtful |
+//! | text STL, of which there may be several solids | fewer solids | plausible |
+//! | `.vtk`, whose sections come one after the other | no labels, no velocities | plausible |
+//! | ... without labels or asked velocities, unless the frame before had none | its sections are missing | doubtful |
 //! | text with zeros at its end | unwritten | unreadable |
 //!
 //! The truncations of `tests/watch.rs` try every length of each.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use glam::DVec3;
@@ -37,11 +43,44 @@ pub struct Inspected {
     pub proof: Proof,
     /// What is doubtful, for a warning.
     pub doubt: Option<String>,
-    /// Whether the surface is open or leaves vertices unused; known of formats that do not say how long they are.
-    pub loose: Option<bool>,
+    /// What the next frame is expected to have too.
+    pub traits: Traits,
 }
 
-/// Reads a mesh from the bytes of a file, with velocities of that name; `loose_before` is what was found of another frame.
+/// What a file that is cut may lack without a fault; `None` where nothing is known of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traits {
+    /// Whether the surface is open or leaves vertices unused.
+    pub loose: Option<bool>,
+    /// Whether its triangles have labels.
+    pub labels: Option<bool>,
+    /// Whether its vertices have velocities.
+    pub velocities: Option<bool>,
+}
+
+impl Inspected {
+    fn new(mesh: RawMesh, proof: Proof, doubt: Option<String>) -> Self {
+        let traits = Traits { labels: Some(mesh.interfaces.is_some()), ..Traits::default() };
+        Self { mesh, proof, doubt, traits }
+    }
+
+    /// Doubts a mesh without velocities where the one before had them, or where none is known.
+    pub fn expect_velocities(&mut self, before: Traits) {
+        self.traits.velocities = Some(self.mesh.velocities.is_some());
+        self.expect(self.mesh.velocities.is_some(), before.velocities, "velocities");
+    }
+
+    fn expect(&mut self, is_there: bool, before: Option<bool>, what: &str) {
+        if is_there || before == Some(false) {
+            return;
+        }
+        self.proof = Proof::Doubtful;
+        let doubt = before.map(|_| format!("it has no {what}, unlike the frame before"));
+        self.doubt = self.doubt.take().or(doubt);
+    }
+}
+
+/// Reads a mesh from the bytes of a file, with velocities of that name; `before` is what was found of another frame.
 ///
 /// # Errors
 /// [`MeshError`] when the bytes are no whole mesh.
@@ -49,18 +88,45 @@ pub fn inspect(
     bytes: &[u8],
     path: &Path,
     velocity: &VelocityName,
-    loose_before: Option<bool>,
+    before: Traits,
+) -> Result<Inspected, MeshError> {
+    catch_unwind(AssertUnwindSafe(|| inspect_bytes(bytes, path, velocity, before)))
+        .unwrap_or_else(|_| Err(malformed(path, "floe itself fails on it, which is worth a report")))
+}
+
+fn inspect_bytes(
+    bytes: &[u8],
+    path: &Path,
+    velocity: &VelocityName,
+    before: Traits,
 ) -> Result<Inspected, MeshError> {
     let format = Format::of(path).ok_or_else(|| malformed(path, "its name promises no known mesh format"))?;
     let mesh = mesh::read_bytes(bytes, format, velocity, path)?;
     if format.gzip {
-        return Ok(Inspected { mesh, proof: Proof::Proven, doubt: None, loose: None });
+        return Ok(Inspected::new(mesh, Proof::Proven, None));
     }
     let zeros = bytes.iter().rev().take_while(|&&byte| byte == 0).count();
     match format.syntax {
-        Syntax::Obj | Syntax::Dsc => inspect_endless(bytes, mesh, path, zeros, loose_before),
+        Syntax::Obj | Syntax::Dsc => inspect_endless(bytes, mesh, path, zeros, before.loose),
+        Syntax::Stl if !is_binary_stl(bytes) => Ok(Inspected::new(mesh, Proof::Plausible, None)),
+        Syntax::Vtk => {
+            let mut inspected = inspect_counted(bytes, mesh, path, zeros)?;
+            inspected.proof = inspected.proof.max(Proof::Plausible);
+            let is_labelled = inspected.mesh.interfaces.is_some();
+            inspected.expect(is_labelled, before.labels, "labels");
+            if *velocity != VelocityName::Nothing {
+                inspected.expect_velocities(before);
+            }
+            Ok(inspected)
+        }
         _ => inspect_counted(bytes, mesh, path, zeros),
     }
+}
+
+/// The length of a binary STL file follows from its count.
+fn is_binary_stl(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..84).map(|c| u64::from(u32::from_le_bytes([c[0], c[1], c[2], c[3]])));
+    count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * count)
 }
 
 /// A format that says how long it is.
@@ -82,7 +148,7 @@ fn inspect_counted(bytes: &[u8], mesh: RawMesh, path: &Path, zeros: usize) -> Re
         (None, true) => Proof::Plausible,
         (None, false) => Proof::Proven,
     };
-    Ok(Inspected { mesh, proof, doubt, loose: None })
+    Ok(Inspected::new(mesh, proof, doubt))
 }
 
 /// A text that may end after any line.
@@ -109,7 +175,9 @@ fn inspect_endless(
     };
     let unknown = loose && loose_before.is_none();
     let proof = if doubt.is_some() || unknown { Proof::Doubtful } else { Proof::Plausible };
-    Ok(Inspected { mesh, proof, doubt, loose: Some(loose) })
+    let mut inspected = Inspected::new(mesh, proof, doubt);
+    inspected.traits.loose = Some(loose);
+    Ok(inspected)
 }
 
 /// Whether the surface of an OBJ file has a rim, or the file vertices that no face uses.

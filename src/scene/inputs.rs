@@ -47,6 +47,20 @@ impl Inputs {
         Ok(inputs)
     }
 
+    /// The names of those files; such as are wrong are told by [`Self::of_frame`].
+    pub fn paths_of_frame(world: &World, number: FrameNumber, mesh: &Path) -> Vec<PathBuf> {
+        let velocities = mesh::velocities_beside(mesh, &world.velocity_name());
+        let surfaces = world.surfaces_of_frame(number).filter_map(|found| Some(found.ok()?.1));
+        velocities.into_iter().chain(surfaces).chain(world.grids_of_frame(number).flatten()).collect()
+    }
+
+    /// Names and contents of the meshes of surfaces that only one frame has.
+    pub fn surfaces(&self, world: &World, number: FrameNumber) -> Vec<(&Path, &[u8])> {
+        let wanted: Vec<PathBuf> = world.surfaces_of_frame(number).flatten().map(|(_, path)| path).collect();
+        let files = self.files.iter().filter(|(path, _)| wanted.contains(path));
+        files.map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect()
+    }
+
     /// The hash of each file, behind which meshes have velocities beside them: [`NO_FILE`] where there are none.
     pub fn hashes(&self) -> Vec<ContentHash> {
         let hash = |bytes: &[u8]| -> ContentHash { Sha256::digest(bytes).into() };

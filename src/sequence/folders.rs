@@ -35,6 +35,11 @@ pub(super) fn is_pattern(base: &Path, pattern: &str) -> bool {
     !matches!(Parts::of(base, pattern), Ok(None))
 }
 
+/// The folder that holds those that vary; `None` when the pattern has neither number nor glob in the name of a folder.
+pub(super) fn above(base: &Path, pattern: &str) -> Option<PathBuf> {
+    Parts::of(base, pattern).ok().flatten().map(|parts| base.join(parts.above))
+}
+
 /// The frames of a pattern whose number, or whose glob, stands in the name of a folder; `None` when it has
 /// neither there.
 pub(super) fn by_pattern(base: &Path, pattern: &str) -> Result<Option<Vec<FrameFile>>, SequenceError> {

@@ -58,6 +58,15 @@ pub fn is_sequence(base: &Path, pattern: &str) -> bool {
         || join(base, pattern).is_dir()
 }
 
+/// The folder whose entries tell which frames [`discover`] finds; it need not be there.
+pub fn listed_folder(base: &Path, pattern: &str) -> PathBuf {
+    let whole = join(base, pattern);
+    if pattern.is_empty() || whole.is_dir() {
+        return whole;
+    }
+    folders::above(base, pattern).unwrap_or_else(|| join(base, split_path(pattern).0))
+}
+
 /// Finds the numbered pictures of a folder, of one extension, in ascending order; denoised copies are not among them.
 ///
 /// # Errors

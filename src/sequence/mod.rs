@@ -22,7 +22,7 @@ mod selection;
 use std::path::PathBuf;
 
 pub use error::SequenceError;
-pub use frames::{discover, discover_pictures, is_sequence};
+pub use frames::{discover, discover_pictures, is_sequence, listed_folder};
 pub use gaps::{Gap, gaps};
 #[cfg(test)]
 pub(crate) use name::is_frame_name;

@@ -41,6 +41,21 @@ fn a_bad_frame_is_told_and_the_others_are_drawn() {
     assert_eq!(drawn_of(&picture(&folder, 3)), Some(hash(&contents(3))));
 }
 
+/// What `floe render` refuses is no success because it came later: frame 2 was not seen.
+#[test]
+fn a_folder_in_disorder_is_told_and_is_no_success() {
+    let folder = Folder::with_scene(&scene(""));
+    folder.write("frames/frame_0001.ply", contents(1));
+    let child = start(&folder, &["--done-file", "DONE", "--idle-timeout", "0.3", "--settle", "0.05"]);
+    wait_for(&picture(&folder, 1));
+    folder.write("frames/frame_0002.ply", contents(2));
+    folder.write("frames/frame_2.ply", contents(2));
+    folder.write("frames/DONE", "");
+    let (out, err) = ended(child, 65);
+    assert!(out.starts_with("nothing has changed for a while: "), "{out}");
+    assert_eq!(err.matches("warning: frame 2 is there twice").count(), 1, "{err}");
+}
+
 #[test]
 fn wrong_options_and_an_output_without_a_place_are_usage() {
     let folder = Folder::with_scene(&scene(""));

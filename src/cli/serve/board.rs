@@ -9,9 +9,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::cli::watching::describe;
+use crate::driver::picture::picture_path;
 use crate::driver::watch::Phase;
 use crate::driver::{FrameRecord, Job, Observer, Status, WatchStatus};
-use crate::sequence::{FrameNumber, output_path};
+use crate::sequence::FrameNumber;
 
 /// State and frames.
 #[derive(Default)]
@@ -66,14 +67,14 @@ impl Board {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes up what an earlier watch wrote into the ledger of the same pictures.
-    fn recall(&self, ledger: &Path) {
+    /// Takes up what an earlier watch wrote into the ledger of the same pictures. Where they are follows from the pattern:
+    /// what a ledger says may be of another folder, or of anyone.
+    fn recall(&self, ledger: &Path, pattern: &str) {
         let text = std::fs::read_to_string(ledger).unwrap_or_default();
         let mut state = self.lock();
         for line in text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
-            let (Some(frame), Some(output)) = (line["frame"].as_str(), line["output"].as_str()) else {
-                continue;
-            };
+            let Some(frame) = line["frame"].as_str() else { continue };
+            let Ok(number) = frame.parse::<FrameNumber>() else { continue };
             let status = match line["status"].as_str() {
                 Some("complete") => Status::Complete,
                 Some("preview") => Status::Preview,
@@ -81,7 +82,7 @@ impl Board {
             };
             let point = [line["render_seconds"].as_f64(), line["relative_error"]["estimate"].as_f64()];
             let problem = line["error"].as_str().map(str::to_owned);
-            state.put(frame, status, problem, Path::new(output), point);
+            state.put(frame, status, problem, &picture_path(pattern, number), point);
         }
     }
 
@@ -177,8 +178,8 @@ impl State {
 
 impl Observer for Board {
     fn opened(&self, _: &Job, pattern: &str) {
-        let picture = PathBuf::from(output_path(pattern, FrameNumber::ONE));
-        self.recall(&picture.with_file_name("ledger.jsonl"));
+        let picture = picture_path(pattern, FrameNumber::ONE);
+        self.recall(&picture.with_file_name("ledger.jsonl"), pattern);
         self.lock().latest = Some(picture.with_file_name("latest.png"));
     }
 
@@ -223,6 +224,18 @@ mod tests {
         assert_eq!(changed["frames"].as_array().unwrap().len(), 1);
         assert_eq!(changed["frames"][0]["state"], "complete");
         assert!(answer(3)["frames"].as_array().unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_ledger_does_not_say_where_pictures_are() {
+        let ledger = tempfile::NamedTempFile::new().unwrap();
+        let line = r#"{"frame":"7","status":"complete","output":"/etc/secret.exr"}"#;
+        std::fs::write(ledger.path(), format!("{line}\n{{\"frame\":\"../8\",\"status\":\"complete\"}}\n"))
+            .unwrap();
+        let board = Board::default();
+        board.recall(ledger.path(), "out/frame_####.exr");
+        assert_eq!(board.png("7"), Some("out/frame_0007.png".into()));
+        assert_eq!(board.lock().frames.len(), 1);
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! Names of frames are looked up in a table and never become part of a path. Nothing can be changed from the page.
 
 mod board;
+mod http;
 mod server;
 mod thumbnail;
 

@@ -1,13 +1,12 @@
 //! Answers requests for the page.
 
-use std::io::Cursor;
-use std::net::{IpAddr, SocketAddr};
+use std::io;
+use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use tiny_http::{Header, Method, Request, Response};
-
 use super::board::Board;
+use super::http::{LIMITS, Request, Response, answer_all};
 use super::thumbnail::thumbnail;
 
 const PAGE: &str = include_str!("page.html");
@@ -19,51 +18,43 @@ const POLICY: &str = "default-src 'none'; img-src 'self'; connect-src 'self'; st
 /// A kind of contents, and the contents.
 type Found = (&'static str, Vec<u8>);
 
-/// Answers at an address from now until the process ends, on a thread of its own; port 0 is one that is free. Returns
+/// Answers at an address from now until the process ends, on threads of its own; port 0 is one that is free. Returns
 /// where it listens.
 ///
 /// # Errors
 /// What the system says when it cannot.
-pub fn serve(address: IpAddr, port: u16, board: Arc<Board>) -> Result<SocketAddr, String> {
-    let http = tiny_http::Server::http((address, port)).map_err(|error| error.to_string())?;
-    let bound = http.server_addr().to_ip().unwrap_or(SocketAddr::new(address, port));
+pub fn serve(address: IpAddr, port: u16, board: Arc<Board>) -> io::Result<SocketAddr> {
+    let listener = TcpListener::bind((address, port))?;
+    let bound = listener.local_addr()?;
+    let is_local = bound.ip().is_loopback();
     // Nobody waits for it: a browser that does not take its answer must not keep the watch from ending.
-    std::thread::spawn(move || {
-        for request in http.incoming_requests() {
-            answer(request, &board, bound.ip().is_loopback());
-        }
-    });
+    std::thread::Builder::new().name("page".into()).spawn(move || {
+        answer_all(&listener, LIMITS, move |request| answer(request, &board, is_local));
+    })?;
     Ok(bound)
 }
 
-fn answer(request: Request, board: &Board, is_local: bool) {
-    let status = if *request.method() != Method::Get {
+fn answer(request: &Request, board: &Board, is_local: bool) -> Response {
+    // Pages of other sites may not read this one under a name of theirs that they let point to this machine.
+    let is_own = request.host.as_deref().is_none_or(is_own_name);
+    let status = if request.method != "GET" {
         Err(405)
-    } else if is_local && !names_this_machine(&request) {
+    } else if is_local && !is_own {
         Err(403)
     } else {
-        found(request.url(), board).ok_or(404)
+        found(&request.target, board).ok_or(404)
     };
     let (code, kind, body) = match status {
         Ok((kind, body)) => (200, kind, body),
         Err(code) => (code, "text/plain", format!("{code}\n").into_bytes()),
     };
-    let length = body.len();
-    let headers = [
+    let headers = vec![
         ("Content-Type", kind),
         ("Content-Security-Policy", POLICY),
         ("X-Content-Type-Options", "nosniff"),
         ("Cache-Control", if kind == "image/png" { "max-age=3600" } else { "no-store" }),
     ];
-    let headers = headers.iter().filter_map(|(name, value)| Header::from_bytes(*name, *value).ok()).collect();
-    // A browser that has gone away needs no answer.
-    let _ = request.respond(Response::new(code.into(), headers, Cursor::new(body), Some(length), None));
-}
-
-/// Pages of other sites may not read this one under a name of theirs that they let point to this machine.
-fn names_this_machine(request: &Request) -> bool {
-    let host = request.headers().iter().find(|header| header.field.equiv("Host"));
-    host.is_none_or(|host| is_own_name(host.value.as_str()))
+    Response { code, headers, body }
 }
 
 fn is_own_name(host: &str) -> bool {

@@ -16,7 +16,13 @@ fn at(millis: u64) -> Duration {
 /// The signature of `size` bytes written at a time that is no whole second.
 fn signature(size: u64) -> Signature {
     let modified = Some(SystemTime::UNIX_EPOCH + Duration::from_millis(1_700_000_000_123));
-    Signature { size, modified, changed: (1_700_000_000, 123_000_000), identity: (1, 2) }
+    Signature {
+        size,
+        modified,
+        changed: (1_700_000_000, 123_000_000),
+        identity: (1, 2),
+        others: Others::default(),
+    }
 }
 
 /// A look at an unchanged file.
@@ -109,6 +115,7 @@ fn any_part_of_the_signature_tells_a_change() {
         Signature { modified: None, ..old },
         Signature { changed: (1_700_000_000, 124_000_000), ..old },
         Signature { identity: (1, 3), ..old },
+        old.with(Others::of(&[PathBuf::from("missing")])),
     ];
     for new in news {
         let mut file = Readiness::new(old, at(0));
@@ -116,6 +123,22 @@ fn any_part_of_the_signature_tells_a_change() {
         assert!(!file.seen(old, at(1100)) && file.is_settled());
         assert!(file.seen(new, at(1200)) && !file.is_settled());
     }
+}
+
+/// A file beside the mesh that comes, grows or goes.
+#[test]
+fn other_files_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("velocity1.bobj");
+    let others = || Others::of(std::slice::from_ref(&path));
+    let mut found = vec![others()];
+    for contents in ["a", "ab"] {
+        std::fs::write(&path, contents).unwrap();
+        found.push(others());
+    }
+    assert!(found[0] != found[1] && found[1] != found[2] && found[0] != found[2]);
+    assert_eq!(others(), found[2]);
+    assert_eq!(Others::of(&[]), Others::default());
 }
 
 /// Two writes within a second of such a file system look the same: longer quiet passes the second.
@@ -148,6 +171,14 @@ fn failures_wait_for_a_change_or_for_their_time() {
     file.drawn(signature(9));
     file.failed(signature(9), None);
     assert_eq!(file.due(&rules()), Some(at(4500)));
+}
+
+/// A watch may be told to take no file for whole.
+#[test]
+fn the_longest_quiet_is_no_overflow() {
+    let rules = Rules::new(Duration::MAX);
+    assert_eq!(rules.patience(), Duration::MAX);
+    assert_eq!(Readiness::new(signature(9), at(1)).due(&rules), Some(Duration::MAX));
 }
 
 #[test]

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::drawn::Sought;
+use super::frame_files::Whole;
 use super::lookout::Lookout;
 use super::status::{Phase, Rate, WatchStatus};
 use super::worker::{Commission, Done, Tagged, Worker};
@@ -10,14 +12,14 @@ use super::{End, WatchReport, shown};
 use crate::driver::ahead::Preparation;
 use crate::driver::arrivals::{Arrival, Came, read_signed};
 use crate::driver::error::{Blame, RenderError};
-use crate::driver::fingerprint::{Fingerprints, FrameSource, Identity};
+use crate::driver::fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
 use crate::driver::job::{FrameTask, Job};
-use crate::driver::picture::{PictureState, picture_path};
-use crate::driver::ready::{Look, Proof, Signature, Verdict};
+use crate::driver::picture::picture_path;
+use crate::driver::ready::{Look, Others, Proof, Signature, Verdict};
 use crate::driver::render::Observer;
 use crate::driver::resume::add_missing_png;
 use crate::driver::session::Session;
-use crate::driver::whole::{Inspected, inspect};
+use crate::driver::whole::Traits;
 use crate::film::write::write_atomically;
 use crate::mesh::MeshError;
 use crate::scene::FrameError;
@@ -47,8 +49,8 @@ pub(super) struct Watch<'a> {
     /// What `latest.png` shows, and the picture that it is to be a copy of.
     newest: Option<Came>,
     copied: Option<PathBuf>,
-    /// Whether the surface of the frame that was looked at last was loose ([`Inspected`]).
-    loose: Option<bool>,
+    /// What the mesh of the frame that was looked at last had, and then its surfaces.
+    traits: Vec<Traits>,
     rate: Rate,
     finished: usize,
 }
@@ -57,7 +59,7 @@ pub(super) struct Watch<'a> {
 struct Found {
     look: Look,
     /// The mesh, and what picture it makes if the other files of the frame are there.
-    contents: Result<(Inspected, Result<FrameSource, FrameError>), MeshError>,
+    contents: Result<(Whole, Result<FrameSource, FrameError>), MeshError>,
     read_seconds: f64,
 }
 
@@ -75,6 +77,8 @@ impl<'a> Watch<'a> {
             // The scene may have come after the folder was looked at.
             lookout.settle_on(&description.directory, &frames.path);
         }
+        let world = &job.world;
+        lookout.arrivals.look_beside(|number, mesh| Others::of(&Inputs::paths_of_frame(world, number, mesh)));
         let settings = lookout.options.render.settings(&description.render);
         let fingerprints = Fingerprints::new(&job.world, &settings);
         Self {
@@ -86,7 +90,7 @@ impl<'a> Watch<'a> {
             benches,
             newest: None,
             copied: None,
-            loose: None,
+            traits: Vec::new(),
             rate: Rate::default(),
             finished: 0,
         }
@@ -159,23 +163,19 @@ impl<'a> Watch<'a> {
 
     /// Reads a file; `None` when its picture is there already, or nothing is known of the frame any more.
     fn find(&mut self, number: FrameNumber) -> Option<Found> {
-        let (at, rules) = (self.lookout.now(), self.lookout.arrivals.rules());
+        let at = self.lookout.now();
         let arrival = self.lookout.arrivals.get_mut(number)?;
-        let path = arrival.path.clone();
+        let (path, known) = (arrival.path.clone(), arrival.readiness.signature());
         let start = Instant::now();
+        let others = self.lookout.arrivals.others(number, &path);
         let (before, bytes, after) = match read_signed(&path) {
             Ok(read) => read,
             Err(source) => {
-                let before = arrival.readiness.signature();
-                let look = Look { at, end: at, before, after: Some(before), found: None };
-                return Some(Found {
-                    look,
-                    contents: Err(MeshError::Io { path, source }),
-                    read_seconds: 0.0,
-                });
+                let look = Look { at, end: at, before: known, after: Some(known), found: None };
+                let contents = Err(MeshError::Io { path, source });
+                return Some(Found { look, contents, read_seconds: 0.0 });
             }
         };
-        let mut look = Look { at, end: at + start.elapsed(), before, after, found: Some(Proof::Proven) };
         let (bytes, source) = match Inputs::of_frame(&self.job.world, number, std::slice::from_ref(&path)) {
             Err(error) => (bytes, Err(error)),
             Ok(inputs) => {
@@ -184,30 +184,51 @@ impl<'a> Watch<'a> {
                 (source.meshes.pop().map(|(_, bytes)| bytes).unwrap_or_default(), Ok(source))
             }
         };
+        // Whatever else the frame is made of has been read by now.
+        let others_after = self.lookout.arrivals.others(number, &path);
+        let (before, after) = (before.with(others), after.map(|after| after.with(others_after)));
+        let mut look = Look { at, end: at + start.elapsed(), before, after, found: Some(Proof::Proven) };
         if let Ok(FrameSource { identity, .. }) = &source
-            && is_drawn(arrival, identity, &picture_path(self.pattern, number))
+            && self.is_drawn(number, identity)
         {
-            if arrival.readiness.judge(&look, &rules) == Verdict::Accepted {
-                arrival.drawn = Some(identity.mesh_hash.clone());
-                arrival.forgive();
-                let came = (arrival.readiness.since(), number);
-                if let Err(error) = add_missing_png(self.job, &picture_path(self.pattern, number)) {
-                    self.lookout.observer.warning(&error.to_string());
-                }
-                self.show(came, None);
-            }
+            self.take_for_drawn(number, &look, identity.fingerprint);
             return None;
         }
-        let velocity = self.job.world.velocity_name();
-        let mut inspected = inspect(&bytes, &path, &velocity, self.loose);
-        if let (Ok(Inspected { mesh, .. }), Ok(FrameSource { inputs, .. })) = (&mut inspected, &source)
-            && let Err(error) = inputs.add_velocities(mesh, &path, &velocity)
-        {
-            inspected = Err(error);
-        }
-        look.found = inspected.as_ref().ok().map(|inspected| inspected.proof);
-        let contents = inspected.map(|inspected| (inspected, source));
+        let inputs = source.as_ref().ok().map(|source| &source.inputs);
+        let whole = Whole::of(&self.job.world, number, (&path, &bytes), inputs, &self.traits);
+        look.found = whole.as_ref().ok().map(|whole| whole.proof);
+        let contents = whole.map(|whole| (whole, source));
         Some(Found { look, contents, read_seconds: start.elapsed().as_secs_f64() })
+    }
+
+    /// Whether the picture of a frame is there; after a restart its file is asked.
+    fn is_drawn(&self, number: FrameNumber, identity: &Identity) -> bool {
+        let arrivals = &self.lookout.arrivals;
+        match arrivals.get(number).map(|arrival| (&arrival.path, arrival.drawn)) {
+            None => false,
+            Some((_, Some(known))) => known == identity.fingerprint,
+            Some((path, None)) => {
+                let next = arrivals.after(number).map(|(next, arrival)| (next, arrival.path.as_path()));
+                let frame = Sought { number, path, identity, next };
+                frame.is_drawn(&self.job.world, &self.fingerprints, &picture_path(self.pattern, number))
+            }
+        }
+    }
+
+    /// A frame whose picture is there need not be handed on.
+    fn take_for_drawn(&mut self, number: FrameNumber, look: &Look, fingerprint: Fingerprint) {
+        let rules = self.lookout.arrivals.rules();
+        let Some(arrival) = self.lookout.arrivals.get_mut(number) else { return };
+        if arrival.readiness.judge(look, &rules) != Verdict::Accepted {
+            return;
+        }
+        arrival.drawn = Some(fingerprint);
+        arrival.forgive();
+        let came = (arrival.readiness.since(), number);
+        if let Err(error) = add_missing_png(self.job, &picture_path(self.pattern, number)) {
+            self.lookout.observer.warning(&error.to_string());
+        }
+        self.show(came, None);
     }
 
     fn commission(
@@ -216,7 +237,7 @@ impl<'a> Watch<'a> {
         preview: bool,
         look: Look,
         source: FrameSource,
-        inspected: Inspected,
+        inspected: Whole,
         read_seconds: f64,
     ) {
         let Some(arrival) = self.lookout.arrivals.get_mut(number) else { return };
@@ -225,7 +246,7 @@ impl<'a> Watch<'a> {
             let text = format!("{}: {doubt}; it is drawn, since it does not change any more", path.display());
             self.lookout.observer.warning(&text);
         }
-        self.loose = inspected.loose;
+        self.traits = inspected.traits;
         arrival.previewed = Some(look.before);
         if preview {
             arrival.readiness.wanted_again(&look);
@@ -263,8 +284,10 @@ impl<'a> Watch<'a> {
     fn failed(&mut self, number: FrameNumber, signature: Signature, error: RenderError) {
         let (now, patience) = (self.lookout.now(), self.lookout.arrivals.rules().patience());
         let Some(arrival) = self.lookout.arrivals.get_mut(number) else { return };
-        let delay = patience * (1 << arrival.failures.min(MOST_DOUBLINGS));
-        arrival.readiness.failed(signature, may_pass(&error, &arrival.path).then_some(now + delay));
+        let delay = patience.saturating_mul(1 << arrival.failures.min(MOST_DOUBLINGS));
+        arrival
+            .readiness
+            .failed(signature, may_pass(&error, &arrival.path).then_some(now.saturating_add(delay)));
         arrival.failures += 1;
         arrival.failure = Some(error);
     }
@@ -282,12 +305,19 @@ impl<'a> Watch<'a> {
                 arrival.drawn = None;
             }
             if let Some(Ok(_)) = done.outcome {
-                arrival.drawn = Some(done.mesh_hash);
+                arrival.drawn = Some(done.fingerprint);
                 arrival.readiness.drawn(done.signature);
                 arrival.forgive();
                 self.rate.count(now);
                 self.finished += 1;
             }
+        }
+        if self.lookout.arrivals.get_mut(done.number).is_none()
+            && !done.preview
+            && matches!(done.outcome, Some(Ok(_)))
+        {
+            self.lookout.arrivals.outlived(done.number);
+            self.finished += 1;
         }
         match done.outcome {
             Some(Ok(png)) => self.show(done.came, Some(&png)),
@@ -330,7 +360,8 @@ impl<'a> Watch<'a> {
     fn is_over(&self) -> Option<End> {
         let arrivals = &self.lookout.arrivals;
         if let Some(last) = self.lookout.options.until
-            && arrivals.is_drawn_up_to(last)
+            && arrivals.is_clear()
+            && arrivals.is_done_up_to(last)
             // Frames may come out of order: those that seem to be missing get a little time.
             && (!arrivals.has_gaps_before(last) || self.lookout.idle() >= arrivals.rules().patience())
         {
@@ -360,33 +391,12 @@ impl<'a> Watch<'a> {
         });
     }
 
-    fn report(mut self, ended: End) -> WatchReport {
-        let mut report = WatchReport {
-            ended,
-            drawn: Vec::new(),
-            pending: Vec::new(),
-            failures: Vec::new(),
-            expected_more: ended == End::Interrupted && self.lookout.options.expects_more(),
+    fn report(self, ended: End) -> WatchReport {
+        WatchReport {
             finished: self.finished,
-            seconds: 0.0,
             places: Some((self.pattern.into(), self.desk.report.ledger.clone())),
-        };
-        for (number, arrival) in self.lookout.arrivals.iter_mut() {
-            match arrival.failure.take() {
-                Some(error) => report.failures.push((number, error)),
-                None if arrival.is_settled() && arrival.drawn.is_some() => report.drawn.push(number),
-                None => report.pending.push(number),
-            }
+            ..self.lookout.report(ended)
         }
-        report
-    }
-}
-
-/// Whether the picture of a frame is there; after a restart its file is asked.
-fn is_drawn(arrival: &Arrival, identity: &Identity, picture: &Path) -> bool {
-    match &arrival.drawn {
-        Some(hash) => *hash == identity.mesh_hash,
-        None => PictureState::of(picture, &identity.fingerprint) == PictureState::Complete,
     }
 }
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use super::WatchOptions;
 use super::wake::{News, Wake};
 use super::worker::Done;
+use super::{End, WatchOptions, WatchReport};
 use crate::driver::arrivals::Arrivals;
 use crate::driver::error::RenderError;
 use crate::driver::ready::Rules;
@@ -20,7 +20,7 @@ const SHARE: u32 = 20;
 
 /// The frames of a folder, as they come.
 pub(super) struct Lookout<'a> {
-    pub arrivals: Arrivals,
+    pub arrivals: Arrivals<'a>,
     pub observer: &'a dyn Observer,
     pub options: &'a WatchOptions,
     start: Instant,
@@ -113,7 +113,8 @@ impl<'a> Lookout<'a> {
         }
         let after = self.now();
         let cost = after.saturating_sub(now);
-        self.due = (after + self.options.poll, after + (cost * SHARE).max(self.options.quiet / 5));
+        let pause = cost.saturating_mul(SHARE).max(self.options.quiet / 5);
+        self.due = (after.saturating_add(self.options.poll), after.saturating_add(pause));
         Ok(())
     }
 
@@ -142,14 +143,42 @@ impl<'a> Lookout<'a> {
     }
 
     /// Whether nothing more is to be expected, as far as the user has told.
-    pub fn is_over(&self) -> Option<super::End> {
+    pub fn is_over(&self) -> Option<End> {
         if !self.arrivals.is_settled() {
             return None;
         }
-        if self.done {
-            return Some(super::End::DoneFile);
+        if self.done && self.arrivals.is_clear() {
+            return Some(End::DoneFile);
         }
         let timeout = self.options.idle_timeout?;
-        (self.idle() >= timeout).then_some(super::End::Idle)
+        (self.idle() >= timeout).then_some(End::Idle)
+    }
+
+    /// What has become of the frames. A folder in disorder may hold any number of others.
+    pub fn report(mut self, ended: End) -> WatchReport {
+        let mut report = WatchReport {
+            ended,
+            drawn: self.arrivals.gone().iter().copied().collect(),
+            pending: Vec::new(),
+            failures: Vec::new(),
+            trouble: None,
+            expected_more: ended == End::Interrupted && self.options.expects_more(),
+            finished: 0,
+            seconds: 0.0,
+            places: None,
+        };
+        if let Some((error, untold)) = self.arrivals.take_trouble() {
+            untold.iter().for_each(|text| self.observer.warning(text));
+            report.trouble = Some(error.into());
+        }
+        for (number, arrival) in self.arrivals.iter_mut() {
+            match arrival.failure.take() {
+                Some(error) => report.failures.push((number, error)),
+                None if arrival.is_settled() && arrival.drawn.is_some() => report.drawn.push(number),
+                None => report.pending.push(number),
+            }
+        }
+        report.drawn.sort_unstable();
+        report
     }
 }

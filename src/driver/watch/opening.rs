@@ -14,10 +14,11 @@ use crate::driver::error::RenderError;
 use crate::driver::job::{Job, SceneFile, find_scene};
 use crate::driver::ready::{Look, Verdict};
 use crate::driver::render::Observer;
-use crate::driver::whole::{Inspected, inspect};
+use crate::driver::whole::{Inspected, Traits, inspect};
 use crate::mesh::{MeshError, RawMesh, VelocityName};
 use crate::scene::FrameError;
-use crate::scene::description::SceneDescription;
+use crate::scene::description::{Placement, SceneDescription};
+use crate::sequence::FrameNumber;
 
 /// Which frames are waited for.
 struct Expected {
@@ -29,6 +30,9 @@ struct Expected {
     needs_frame: bool,
 }
 
+/// An open scene and its frames as they come, or how it ended before that.
+type Opening<'a> = Result<(Job, Lookout<'a>), (End, Lookout<'a>)>;
+
 /// Waits until a scene can be opened; how it ended if it could not.
 ///
 /// # Errors
@@ -37,7 +41,7 @@ pub(super) fn open<'a>(
     path: &Path,
     options: &'a WatchOptions,
     observer: &'a dyn Observer,
-) -> Result<Result<(Job, Lookout<'a>), End>, RenderError> {
+) -> Result<Opening<'a>, RenderError> {
     let mut expected = expect(path)?;
     let mut lookout = Lookout::new(expected.base.clone(), &expected.pattern, options, observer);
     loop {
@@ -46,15 +50,18 @@ pub(super) fn open<'a>(
             return Ok(Ok((Job::open_on(path, &none)?, lookout)));
         }
         lookout.scan()?;
-        if let Some(mesh) = first_frame(&mut lookout) {
+        if let Some((number, mesh)) = first_frame(&mut lookout) {
             let job = Job::open_on(path, &|_: &Path, _: &str| Ok(mesh.clone()))?;
+            if expected.has_scene {
+                warn_of_camera(&job, number, observer);
+            }
             return Ok(Ok((job, lookout)));
         }
         if options.render.interrupt.is_requested() {
-            return Ok(Err(End::Interrupted));
+            return Ok(Err((End::Interrupted, lookout)));
         }
         if let Some(end) = lookout.is_over() {
-            return Ok(Err(end));
+            return Ok(Err((end, lookout)));
         }
         tell(&lookout);
         let _ = lookout.pause();
@@ -84,7 +91,7 @@ fn expect(path: &Path) -> Result<Expected, RenderError> {
 }
 
 /// The mesh of the lowest frame that is whole; the frame stays to be drawn.
-fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
+fn first_frame(lookout: &mut Lookout<'_>) -> Option<(FrameNumber, RawMesh)> {
     let now = lookout.now();
     let rules = lookout.arrivals.rules();
     let number = lookout.arrivals.next(Order::Oldest, now, |_, _| true)?;
@@ -97,7 +104,7 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
         |(before, _, after)| (*before, *after),
     );
     let inspected = match read {
-        Ok((_, bytes, _)) => inspect(&bytes, &arrival.path, &VelocityName::Nothing, None),
+        Ok((_, bytes, _)) => inspect(&bytes, &arrival.path, &VelocityName::Nothing, Traits::default()),
         Err(source) => Err(MeshError::Io { path: arrival.path.clone(), source }),
     };
     let found = inspected.as_ref().ok().map(|inspected| inspected.proof);
@@ -105,7 +112,7 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
     match (arrival.readiness.judge(&look, &rules), inspected) {
         (Verdict::Accepted, Ok(Inspected { mesh, .. })) => {
             arrival.readiness.wanted_again(&look);
-            return Some(mesh);
+            return Some((number, mesh));
         }
         (Verdict::Refused, Err(error)) => {
             lookout.observer.warning(&format!("frame {number}: {error}"));
@@ -115,6 +122,17 @@ fn first_frame(lookout: &mut Lookout<'_>) -> Option<RawMesh> {
         _ => {}
     }
     None
+}
+
+/// Another watch may see another frame first, and draw everything again from elsewhere.
+fn warn_of_camera(job: &Job, number: FrameNumber, observer: &dyn Observer) {
+    let scene = &job.world.description;
+    let Some(Placement { eye, target }) = scene.camera.placement else { return };
+    observer.warning(&format!(
+        "{}: the camera frames frame {number}, the first that was whole; to have the same view whichever comes first, \
+         write eye = {eye} and target = {target} into [camera]",
+        scene.file.display()
+    ));
 }
 
 fn tell(lookout: &Lookout<'_>) {

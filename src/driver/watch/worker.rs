@@ -9,19 +9,19 @@ use std::thread::Scope;
 
 use rayon::ThreadPool;
 
+use super::showcase::Showcase;
 use super::status::Rendering;
 use super::wake::News;
 use crate::driver::ahead::{Preparation, Ready, timed};
 use crate::driver::arrivals::Came;
 use crate::driver::error::RenderError;
-use crate::driver::fingerprint::Identity;
+use crate::driver::fingerprint::{Fingerprint, Identity};
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::ledger::FrameRecord;
 use crate::driver::picture::picture_path;
 use crate::driver::ready::Signature;
 use crate::driver::render::Observer;
 use crate::driver::session::Session;
-use crate::film::write::write_atomically;
 use crate::film::{FrameImage, png_bytes};
 use crate::scene::assembly::{Assembled, Buffers, FrameMesh};
 use crate::scene::inputs::Inputs;
@@ -37,7 +37,7 @@ pub(super) struct Commission {
     pub inputs: Inputs,
     /// What picture this makes.
     pub identity: Identity,
-    /// The signature of the file.
+    /// The signature of its files.
     pub signature: Signature,
     /// When it came.
     pub came: Came,
@@ -51,9 +51,9 @@ pub(super) struct Done {
     pub number: FrameNumber,
     /// Whether it is a preview.
     pub preview: bool,
-    /// The hash of the mesh.
-    pub mesh_hash: String,
-    /// The signature of its file.
+    /// What the picture is of.
+    pub fingerprint: Fingerprint,
+    /// The signature of its files.
     pub signature: Signature,
     /// When it came.
     pub came: Came,
@@ -105,6 +105,7 @@ pub(super) struct Easel<'a> {
     pub job: &'a Job,
     pub session: Session<'a>,
     pub pattern: &'a str,
+    pub showcase: &'a Showcase,
     pub pool: ThreadPool,
     pub observer: &'a Tagged<'a>,
 }
@@ -114,7 +115,7 @@ impl Easel<'_> {
         let mut latest: Option<Assembled> = None;
         while let Ok(commission) = commissions.recv() {
             let Commission { task, mesh, inputs, identity, signature, came, read_seconds } = commission;
-            let mesh_hash = identity.mesh_hash.clone();
+            let fingerprint = identity.fingerprint;
             let mut preparation = Preparation { read_seconds, ..Preparation::default() };
             let previous = latest.take();
             let prepared = self.pool.install(|| {
@@ -135,7 +136,7 @@ impl Easel<'_> {
                 Err(error) => self.draw(&task, Err(error.into()), preparation),
             };
             let preview = self.observer.preview;
-            let done = Done { number: task.number, preview, mesh_hash, signature, came, outcome };
+            let done = Done { number: task.number, preview, fingerprint, signature, came, outcome };
             self.observer.rest();
             let _ = news.send(News::Done(Box::new(done)));
         }
@@ -148,7 +149,7 @@ impl Easel<'_> {
         prepared: Result<&Ready, RenderError>,
         preparation: Preparation,
     ) -> Option<Result<Vec<u8>, RenderError>> {
-        let Self { job, session, pattern, pool, observer } = self;
+        let Self { job, session, pattern, showcase, pool, observer } = self;
         let output = &job.world.description.output;
         let path = picture_path(pattern, task.number);
         let png = path.with_extension("png");
@@ -156,16 +157,18 @@ impl Easel<'_> {
         let is_there = match (prepared, observer.preview) {
             (prepared, false) => {
                 let image = pool.install(|| session.turn(task, prepared, preparation));
-                image.map(|image| png_bytes(&image, output.exposure, &png).map(|encoded| bytes = encoded))
+                image.map(|image| {
+                    bytes = png_bytes(&image, output.exposure, &png)?;
+                    if output.png { showcase.finished(&path, &bytes) } else { Ok(()) }
+                })
             }
             // What is wrong with it is told when its picture is to be finished.
             (Err(error), true) => return Some(Err(error)),
             (Ok(ready), true) => {
                 let shown = |image: &FrameImage| {
                     bytes = png_bytes(image, output.exposure, &png)?;
-                    // A finished picture of what the file was before stays until the next one is finished.
-                    if output.png && !path.exists() {
-                        write_atomically(&png, &bytes)?;
+                    if output.png {
+                        showcase.preview(&path, &bytes)?;
                     }
                     Ok(())
                 };
