@@ -11,7 +11,7 @@
 //! levels (black and white among them) stay as they are, nothing flickers between frames, and greys stay grey since
 //! the channels share the threshold. The picture is opaque: it shows the sky.
 //!
-//! The exposure is in the file, as text by the name [`EXPOSURE`] right behind the header `[PNG03]`:
+//! The exposure is in the file, as text by the name `floe:exposure` right behind the header `[PNG03]`:
 //!
 //! ```text
 //! length of the data, "tEXt", name 0 value, CRC-32 of type and data
