@@ -79,15 +79,22 @@ impl SampleStream {
     }
 
     /// The next four numbers in [0, 1).
-    #[inline]
+    ///
+    /// Long walks draw late sets only, in a loop that is half as slow again with a call in it.
+    #[inline(always)]
     pub fn next4(&mut self) -> [f32; 4] {
         let set = self.set;
         self.set += 1;
         if set < STRATIFIED_SETS {
-            sobol::scrambled4(self.index, hash_pair(self.key, set)).map(unit_float)
+            self.stratified4(set)
         } else {
             pcg4d([self.index, self.key, set, 0x85eb_ca6b]).map(unit_float)
         }
+    }
+
+    #[inline(never)]
+    fn stratified4(&self, set: u32) -> [f32; 4] {
+        sobol::scrambled4(self.index, hash_pair(self.key, set)).map(unit_float)
     }
 
     /// A stream of other numbers for branch `branch` of a path that splits here.
