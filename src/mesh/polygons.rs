@@ -11,10 +11,7 @@ pub(super) fn add_fan(
     triangles: &mut Vec<[u32; 3]>,
     place: impl Fn() -> Place,
 ) -> Result<(), Fault> {
-    check(indices, vertices, triangles.len(), place)?;
-    let corner = |k: usize| indices[k] as u32;
-    triangles.extend((2..indices.len()).map(|k| [corner(0), corner(k - 1), corner(k)]));
-    Ok(())
+    add(indices, vertices, triangles, place, |k| [0, k - 1, k])
 }
 
 /// Adds a strip, in which each corner makes a triangle with the two before it; every other one is turned over
@@ -25,12 +22,19 @@ pub(super) fn add_strip(
     triangles: &mut Vec<[u32; 3]>,
     place: impl Fn() -> Place,
 ) -> Result<(), Fault> {
+    add(indices, vertices, triangles, place, |k| [k - 2 + k % 2, k - 1 - k % 2, k])
+}
+
+/// Adds a triangle for each corner from the third on; `corners` tells which it is made of.
+fn add(
+    indices: &[i64],
+    vertices: usize,
+    triangles: &mut Vec<[u32; 3]>,
+    place: impl Fn() -> Place,
+    corners: impl Fn(usize) -> [usize; 3],
+) -> Result<(), Fault> {
     check(indices, vertices, triangles.len(), place)?;
-    let corner = |k: usize| indices[k] as u32;
-    triangles.extend((2..indices.len()).map(|k| {
-        let turned = k % 2;
-        [corner(k - 2 + turned), corner(k - 1 - turned), corner(k)]
-    }));
+    triangles.extend((2..indices.len()).map(|k| corners(k).map(|corner| indices[corner] as u32)));
     Ok(())
 }
 
