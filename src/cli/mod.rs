@@ -6,6 +6,7 @@ mod exit;
 mod info;
 mod progress;
 mod render;
+mod screen;
 #[cfg(feature = "serve")]
 mod serve;
 mod settings;

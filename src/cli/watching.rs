@@ -1,20 +1,15 @@
 //! What the user sees while frames are waited for: a line that changes on a terminal, a line an event elsewhere.
 
-use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use super::streams::say;
+use super::screen::Screen;
 use crate::driver::watch::Phase;
 use crate::driver::{FrameRecord, Job, Observer, Status, WatchStatus};
 
 /// The state of a watch on standard error.
 pub struct Watching {
-    bar: ProgressBar,
-    terminal: bool,
-    quiet: bool,
+    screen: Screen,
     /// What was waited for when that was told last.
     waiting: Mutex<Option<String>>,
 }
@@ -22,28 +17,16 @@ pub struct Watching {
 impl Watching {
     /// A changing line when standard error is a terminal; with `quiet` only warnings and errors.
     pub fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal() && !quiet;
-        let target = if terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(None, target);
-        let style = ProgressStyle::with_template("{spinner} {wide_msg}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-        if terminal {
-            bar.enable_steady_tick(Duration::from_millis(250));
+        let screen = Screen::new(quiet, None, "{spinner} {wide_msg}");
+        if screen.terminal {
+            screen.bar.enable_steady_tick(Duration::from_millis(250));
         }
-        Self { bar, terminal, quiet, waiting: Mutex::new(None) }
+        Self { screen, waiting: Mutex::new(None) }
     }
 
     /// Takes the changing line away.
     pub fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
-
-    fn line(&self, text: &str) {
-        if self.terminal {
-            self.bar.suspend(|| say(text));
-        } else {
-            say(text);
-        }
+        self.screen.finish();
     }
 
     /// Says what is waited for, each time that the waiting begins.
@@ -55,8 +38,8 @@ impl Watching {
             Phase::Rendering(_) => None,
         };
         if *known != waiting {
-            if let (Some(what), false) = (&waiting, self.quiet) {
-                self.line(&format!("waiting for {what}"));
+            if let (Some(what), false) = (&waiting, self.screen.quiet) {
+                self.screen.line(&format!("waiting for {what}"));
             }
             *known = waiting;
         }
@@ -66,30 +49,33 @@ impl Watching {
 impl Observer for Watching {
     fn opened(&self, job: &Job, _: &str) {
         if let Some(scene) = &job.written_scene {
-            self.line(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
+            self.screen
+                .line(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }
     }
 
     fn watching(&self, status: &WatchStatus) {
-        if self.terminal {
-            self.bar.set_message(describe(status));
+        if self.screen.terminal {
+            self.screen.bar.set_message(describe(status));
         } else {
             self.tell_waiting(status);
         }
     }
 
     fn warning(&self, text: &str) {
-        self.line(&format!("warning: {text}"));
+        self.screen.line(&format!("warning: {text}"));
     }
 
     fn finished(&self, record: &FrameRecord) {
         let kind = match record.status {
             Status::Failed => {
                 let error = record.error.as_deref().unwrap_or("unknown");
-                return self.line(&format!("error: frame {}: {error}", record.frame));
+                return self.screen.line(&format!("error: frame {}: {error}", record.frame));
             }
-            _ if self.quiet => return,
-            Status::Interrupted => return self.line(&format!("frame {} is not done yet", record.frame)),
+            _ if self.screen.quiet => return,
+            Status::Interrupted => {
+                return self.screen.line(&format!("frame {} is not done yet", record.frame));
+            }
             Status::Preview => "preview",
             Status::Complete => "frame",
         };
@@ -100,7 +86,7 @@ impl Observer for Watching {
             Status::Preview => record.output.with_extension("png"),
             _ => record.output.clone(),
         };
-        self.line(&format!(
+        self.screen.line(&format!(
             "{kind:<7} {:>6}  {seconds:>7.2} s  {error:<14}  {}",
             record.frame,
             picture.display()
