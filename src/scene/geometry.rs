@@ -92,14 +92,11 @@ impl Geometry {
         if mixed.is_finite() { mixed } else { (a + b + c) / 3.0 }
     }
 
-    /// Leaves no vertex without a motion where some have one, and none where all stand still.
+    /// Leaves no motions where all vertices stand still.
     pub(super) fn settle_motions(&mut self) {
         if self.motions.iter().all(|motion| *motion == Vec3::ZERO) {
             self.motions.clear();
             self.normal_changes.clear();
-        } else {
-            self.motions.resize(self.positions.len(), Vec3::ZERO);
-            self.normal_changes.resize(self.normals.len(), Vec3::ZERO);
         }
     }
 
