@@ -7,11 +7,12 @@ use clap::Args;
 
 use super::exit::Exit;
 use super::streams::{print, say};
+use crate::driver::fingerprint::Parsed;
 use crate::driver::{Job, RenderError};
 use crate::integrator::Integrator;
 use crate::mesh::Region;
 use crate::optics::density::Density;
-use crate::scene::assembly::Assembled;
+use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::camera_path::StartPlaces;
 use crate::scene::description::{DensityDescription, MeshContents};
 use crate::scene::world::World;
@@ -51,8 +52,11 @@ fn report(arguments: &InfoArguments, text: &mut String) -> Result<(), RenderErro
     let integrator = Integrator::new(&job.world.description.render);
     let mut previous = None;
     for task in chosen {
-        let meshes = task.read(&job.world.velocity_name())?;
-        let assembled = job.world.assemble(task.number, meshes, previous.as_ref())?;
+        let Parsed { meshes, inputs, warnings, .. } = task.read(&job.world)?;
+        let buffers = Buffers::default();
+        let mut assembled =
+            job.world.assemble_into(buffers, task.number, meshes, inputs, previous.as_ref())?;
+        assembled.warnings.extend(warnings);
         *text += &describe_frame(&task.number.to_string(), &assembled, &integrator);
         previous = Some(assembled.frame);
     }

@@ -5,15 +5,13 @@
 //! the last frame that could be assembled, whatever the threads do, so that which frames are refitted does not depend
 //! on time. What goes wrong with a frame is told when its turn comes.
 
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 
 use super::error::RenderError;
 use super::fingerprint::{Fingerprints, FrameSource, Identity, Parsed};
+use super::guard::guarded;
 use super::job::FrameTask;
 use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::frame::Frame;
@@ -138,50 +136,10 @@ fn assembled(
     Ok(Ready { assembled, identity })
 }
 
-/// Does some work on a file, and makes a panic an error of that file: one frame that floe fails on does not cost the
-/// others. Nothing that the work leaves half done may be used after that.
-pub(super) fn guarded<T>(
-    path: &Path,
-    work: impl FnOnce() -> Result<T, RenderError>,
-) -> Result<T, RenderError> {
-    catch_unwind(AssertUnwindSafe(work))
-        .unwrap_or_else(|panic| Err(RenderError::Fault { path: path.into(), reason: said(&*panic) }))
-}
-
-/// What a panic says.
-fn said(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say why").into()
-}
-
 /// Adds the time that some work takes.
 pub(super) fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     *seconds += start.elapsed().as_secs_f64();
     result
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::driver::error::Blame;
-
-    #[test]
-    fn a_panic_is_an_error_of_its_file() {
-        let path = Path::new("a/frame_7.vtp");
-        assert_eq!(guarded(path, || Ok(7)).unwrap(), 7);
-        let passed_on = guarded(path, || Err::<(), _>(RenderError::Interrupted));
-        assert!(matches!(passed_on, Err(RenderError::Interrupted)));
-        let number = 7;
-        for error in [
-            guarded(path, || -> Result<(), _> { panic!("index {number}") }).unwrap_err(),
-            guarded(path, || -> Result<(), _> { panic!("index 7") }).unwrap_err(),
-        ] {
-            let text = error.to_string();
-            assert!(text.starts_with("a/frame_7.vtp: ") && text.contains("(index 7)"), "{text}");
-            assert!(text.contains("report"), "{text}");
-            assert_eq!(error.blame(), Blame::Internal);
-        }
-    }
 }

@@ -14,9 +14,9 @@ use std::path::PathBuf;
 
 use sha2::{Digest, Sha256};
 
-use super::ahead::guarded;
 use super::error::RenderError;
 use super::frame_seeds::FrameSeeds;
+use super::guard::guarded;
 use super::job::FrameTask;
 use crate::mesh::{self, VelocityName};
 use crate::scene::FrameError;
@@ -31,7 +31,7 @@ use crate::sequence::FrameNumber;
 /// It is raised by one with every change after which any scene may have other pixels, by a single bit of one channel;
 /// so a picture or a checkpoint that another build has left is never taken for one of this. Changes that only make floe
 /// faster, or read what was refused, do not count.
-pub const PIXELS: u32 = 1;
+pub const PIXELS: u32 = 2;
 
 /// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -146,20 +146,16 @@ impl FrameSource {
     pub fn read(world: &World, fingerprints: &Fingerprints, task: &FrameTask) -> Result<Self, RenderError> {
         let meshes = task.files.iter().map(|path| task.contents(path)).collect::<Result<Vec<_>, _>>()?;
         let inputs = Inputs::of_frame(world, task.number, &task.files)?;
-        let mut source = Self::of(fingerprints, task.number, meshes, inputs);
-        if world.follows_vertices() {
-            source.next = task.next.as_ref().map(|next| {
-                let contents = |path: &PathBuf| match std::fs::read(path) {
-                    Ok(bytes) => Ok((path.clone(), bytes)),
-                    Err(error) => Err(format!("{}: {error}", path.display())),
-                };
-                let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
-                let fps = world.frames().map_or(24.0, |f| f.fps);
-                NextMeshes { files: next.files.iter().map(contents).collect(), seconds: frames / fps }
-            });
-            source.identify(fingerprints, task.number);
-        }
-        Ok(source)
+        let following = task.next.as_ref().filter(|_| world.follows_vertices());
+        let next = following.map(|next| {
+            let contents = |path: &PathBuf| match std::fs::read(path) {
+                Ok(bytes) => Ok((path.clone(), bytes)),
+                Err(error) => Err(format!("{}: {error}", path.display())),
+            };
+            let frames = (next.number.millionths() - task.number.millionths()) as f64 / 1e6;
+            NextMeshes { files: next.files.iter().map(contents).collect(), seconds: frames / world.fps() }
+        });
+        Ok(Self::identified(fingerprints, task.number, meshes, next, inputs))
     }
 
     /// A frame whose files have been read.
@@ -169,24 +165,27 @@ impl FrameSource {
         meshes: Vec<(PathBuf, Vec<u8>)>,
         inputs: Inputs,
     ) -> Self {
-        let identity = Identity { fingerprint: Fingerprint([0; 16]), mesh_hash: String::new() };
-        let mut source = Self { meshes, next: None, inputs, identity };
-        source.identify(fingerprints, number);
-        source
+        Self::identified(fingerprints, number, meshes, None, inputs)
     }
 
-    fn identify(&mut self, fingerprints: &Fingerprints, number: FrameNumber) {
+    fn identified(
+        fingerprints: &Fingerprints,
+        number: FrameNumber,
+        meshes: Vec<(PathBuf, Vec<u8>)>,
+        next: Option<NextMeshes>,
+        inputs: Inputs,
+    ) -> Self {
         let hash = |bytes: &Vec<u8>| -> ContentHash { Sha256::digest(bytes).into() };
-        let hashes: Vec<ContentHash> = self.meshes.iter().map(|(_, bytes)| hash(bytes)).collect();
-        let mut others = self.inputs.hashes();
-        if let Some(NextMeshes { files, seconds }) = &self.next {
+        let hashes: Vec<ContentHash> = meshes.iter().map(|(_, bytes)| hash(bytes)).collect();
+        let mut others = inputs.hashes();
+        if let Some(NextMeshes { files, seconds }) = &next {
             // Velocities are distances in this time, each mesh's to the next one in its own place.
             others.push(Sha256::digest(seconds.to_le_bytes()).into());
             others.extend(files.iter().map(|next| next.as_ref().map_or(NO_FILE, |(_, bytes)| hash(bytes))));
         }
         let mesh_hash = hashes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
         let fingerprint = fingerprints.of_frame(number, &hashes, &others);
-        self.identity = Identity { fingerprint, mesh_hash };
+        Self { meshes, next, inputs, identity: Identity { fingerprint, mesh_hash } }
     }
 
     /// The meshes in the very bytes that were hashed, and the rest.

@@ -1,15 +1,16 @@
 //! Opens what the user points at: a scene file, a folder with one, or a folder of frames.
 
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use glam::DVec3;
 
 use super::error::RenderError;
+use super::fingerprint::{Fingerprints, FrameSource, Parsed};
 use super::meshes::MeshSequence;
 use crate::film::write::write_atomically;
-use crate::mesh::{self, MeshError, RawMesh, VelocityName};
+use crate::mesh::{self, MeshError, RawMesh};
 use crate::scene::FrameError;
-use crate::scene::assembly::FrameMesh;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
 use crate::scene::world::World;
@@ -54,33 +55,25 @@ pub struct NextFrame {
 }
 
 impl FrameTask {
-    /// Reads its meshes, with velocities of that name.
+    /// Reads its files as rendering does, with the settings of the scene.
     ///
     /// # Errors
-    /// When one cannot be read.
-    pub fn read(&self, velocity: &VelocityName) -> Result<Vec<FrameMesh>, RenderError> {
-        let read = |path: &PathBuf| match mesh::read_with(path, velocity) {
-            Ok(mesh) => Ok(FrameMesh { path: path.clone(), mesh }),
-            Err(error) if error.is_not_found() => Err(self.missing(path, error)),
-            Err(error) => Err(FrameError::from(error).into()),
-        };
-        self.files.iter().map(read).collect()
+    /// When one cannot be read, or a mesh is wrong.
+    pub fn read(&self, world: &World) -> Result<Parsed, RenderError> {
+        let fingerprints = Fingerprints::new(world, &world.description.render);
+        FrameSource::read(world, &fingerprints, self)?.parse(world)
     }
 
     /// The bytes of one of its meshes.
     pub(super) fn contents(&self, path: &Path) -> Result<(PathBuf, Vec<u8>), RenderError> {
         match std::fs::read(path) {
             Ok(bytes) => Ok((path.into(), bytes)),
-            Err(source) => Err(self.missing(path, MeshError::Io { path: path.into(), source })),
+            // Of several meshes one that is not there is missed.
+            Err(error) if self.files.len() > 1 && error.kind() == ErrorKind::NotFound => {
+                Err(RenderError::MissingMesh { path: path.into(), number: self.number })
+            }
+            Err(source) => Err(FrameError::from(MeshError::Io { path: path.into(), source }).into()),
         }
-    }
-
-    /// Of several meshes one that is not there is missed.
-    fn missing(&self, path: &Path, error: MeshError) -> RenderError {
-        if self.files.len() > 1 && error.is_not_found() {
-            return RenderError::MissingMesh { path: path.into(), number: self.number };
-        }
-        FrameError::from(error).into()
     }
 }
 

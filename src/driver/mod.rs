@@ -14,6 +14,7 @@ mod checkpoint;
 pub mod error;
 pub mod fingerprint;
 pub mod frame_seeds;
+mod guard;
 pub mod interrupt;
 pub mod job;
 mod keeper;

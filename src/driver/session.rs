@@ -256,7 +256,7 @@ impl<'a> Session<'a> {
         let output = &world.description.output;
         let metadata = ImageMetadata {
             frame_number: number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
-            fps: world.frames().map_or(24.0, |f| f.fps),
+            fps: world.fps(),
             world_to_camera: camera.world_to_camera(world.origin),
             world_to_ndc: camera.world_to_ndc(world.origin),
             attributes: self

@@ -23,11 +23,11 @@
 //!
 //! The truncations of `tests/watch.rs` try every length of each.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use glam::DVec3;
 
+use super::guard::caught;
 use super::ready::Proof;
 use crate::mesh::{self, Format, MeshError, MeshWarning, Place, RawMesh, Region, Syntax, VelocityName};
 
@@ -90,8 +90,10 @@ pub fn inspect(
     velocity: &VelocityName,
     before: Traits,
 ) -> Result<Inspected, MeshError> {
-    catch_unwind(AssertUnwindSafe(|| inspect_bytes(bytes, path, velocity, before)))
-        .unwrap_or_else(|_| Err(malformed(path, "floe itself fails on it, which is worth a report")))
+    let inspected = caught(|| inspect_bytes(bytes, path, velocity, before));
+    inspected.unwrap_or_else(|reason| {
+        Err(malformed(path, &format!("floe itself fails on it, which is worth a report ({reason})")))
+    })
 }
 
 fn inspect_bytes(

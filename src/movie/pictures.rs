@@ -64,7 +64,7 @@ impl Pictures {
             }
         }
         let (files, unfinished) = found.of_scene();
-        let fps = job.world.frames().map_or(24.0, |frames| frames.fps);
+        let fps = job.world.fps();
         Ok(Self { files, unfinished, pattern, fps, exposure: job.world.description.output.exposure })
     }
 

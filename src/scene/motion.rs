@@ -30,7 +30,7 @@ impl World {
         let shutter = self.description.camera.shutter;
         let is_asked =
             (self.tells_motion() || shutter > 0.0) && self.velocities() != &VelocityDescription::None;
-        is_asked.then(|| Pace { fps: self.frames().map_or(24.0, |f| f.fps), shutter })
+        is_asked.then(|| Pace { fps: self.fps(), shutter })
     }
 
     /// True when pictures tell where things go until the next frame.

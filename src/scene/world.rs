@@ -169,6 +169,11 @@ impl World {
     pub fn frames(&self) -> Option<&FramesDescription> {
         self.description.frames.as_ref()
     }
+
+    /// Frames a second; those of film for a still.
+    pub fn fps(&self) -> f64 {
+        self.frames().map_or(24.0, |frames| frames.fps)
+    }
 }
 
 /// Metres. Far from zero a grid that went on growing would leave the eye kilometres from the origin, and with it all

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::error::StudyError;
 use super::temporal::{TemporalErrors, TemporalMetrics, WINDOW};
 use crate::driver::RenderError;
-use crate::driver::fingerprint::{Fingerprints, FrameSource, Parsed};
+use crate::driver::fingerprint::Parsed;
 use crate::driver::frame_seeds::FrameSeeds;
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::tiles::{Sampling, render_pixels};
@@ -116,9 +116,7 @@ fn tasks(job: &Job, study: &SeedModeStudy) -> Result<Vec<FrameTask>, StudyError>
 }
 
 fn assemble(job: &Job, task: &FrameTask, previous: Option<&Frame>) -> Result<Frame, RenderError> {
-    let fingerprints = Fingerprints::new(&job.world, &job.world.description.render);
-    let Parsed { meshes, inputs, .. } =
-        FrameSource::read(&job.world, &fingerprints, task)?.parse(&job.world)?;
+    let Parsed { meshes, inputs, .. } = task.read(&job.world)?;
     let assembled = job.world.assemble_into(Buffers::default(), task.number, meshes, inputs, previous);
     Ok(assembled.map_err(RenderError::from)?.frame)
 }

@@ -26,7 +26,7 @@ pub struct Rendered {
 pub fn prepare(file: &Path) -> Prepared {
     let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     let task = job.tasks().swap_remove(0);
-    let meshes = task.read(&job.world.velocity_name()).unwrap_or_else(|e| panic!("{e}"));
+    let meshes = task.read(&job.world).unwrap_or_else(|e| panic!("{e}")).meshes;
     let assembled = job.world.assemble(task.number, meshes, None).unwrap_or_else(|e| panic!("{e}"));
     let mut sampling = Sampling::new(&job.world.description.render);
     sampling.seed.frame = task.number.millionths();

@@ -52,8 +52,8 @@ impl SceneFolder {
         std::fs::write(&file, toml).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         let job = Job::open(&file).unwrap_or_else(|e| panic!("{e}"));
         let task = job.tasks().swap_remove(0);
-        let meshes = task.read(&job.world.velocity_name());
-        let assembled = meshes.and_then(|meshes| Ok(job.world.assemble(task.number, meshes, None)?));
+        let read = task.read(&job.world);
+        let assembled = read.and_then(|frame| Ok(job.world.assemble(task.number, frame.meshes, None)?));
         assembled.err().unwrap_or_else(|| panic!("this scene was assembled: {toml}"))
     }
 

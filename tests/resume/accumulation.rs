@@ -56,8 +56,7 @@ fn check(integrator: &str, seed: u64) {
     edit(&folder, "samples = 4", &format!("samples = 4\nintegrator = \"{integrator}\"\n{photons}"));
     let job = Job::open(&folder.path("boxes/scene.toml")).unwrap();
     let task = &job.tasks()[0];
-    let frame =
-        job.world.assemble(task.number, task.read(&job.world.velocity_name()).unwrap(), None).unwrap().frame;
+    let frame = job.world.assemble(task.number, task.read(&job.world).unwrap().meshes, None).unwrap().frame;
     let sampling = Sampling::new(&job.world.description.render);
     let alone = render_pixels(&frame, &sampling, &|_, _| ());
     let mut restless = Accumulation::new(frame.views.opening.resolution());

@@ -16,6 +16,7 @@ use crate::driver::ahead::{Preparation, Ready, timed};
 use crate::driver::arrivals::Came;
 use crate::driver::error::RenderError;
 use crate::driver::fingerprint::{Fingerprint, Identity};
+use crate::driver::guard::guarded;
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::ledger::FrameRecord;
 use crate::driver::picture::picture_path;
@@ -122,7 +123,11 @@ impl Easel<'_> {
                 timed(&mut preparation.build_seconds, || {
                     let before = previous.as_ref().map(|assembled| &assembled.frame);
                     let world = &self.job.world;
-                    world.assemble_into(Buffers::default(), task.number, vec![mesh], inputs, before)
+                    let path = mesh.path.clone();
+                    let buffers = Buffers::default();
+                    guarded(&path, || {
+                        Ok(world.assemble_into(buffers, task.number, vec![mesh], inputs, before)?)
+                    })
                 })
             });
             preparation.wait_seconds = preparation.read_seconds + preparation.build_seconds;
@@ -133,7 +138,7 @@ impl Easel<'_> {
                     latest = Some(ready.assembled);
                     outcome
                 }
-                Err(error) => self.draw(&task, Err(error.into()), preparation),
+                Err(error) => self.draw(&task, Err(error), preparation),
             };
             let preview = self.observer.preview;
             let done = Done { number: task.number, preview, fingerprint, signature, came, outcome };
