@@ -12,12 +12,12 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use super::clusters::{Cluster, clusters};
 use super::collapse::Collapse;
 use super::leaf::{Leaf, LeafIds};
-use super::machine::on_large_pages;
 use super::node::{Child, Node};
 use super::scales::Scale;
 use super::soup::{Soup, bounds_of};
 use super::{Accel, MAX_DEPTH, TriangleId};
 use crate::geometry::Bounds;
+use crate::geometry::machine::on_large_pages;
 
 /// Part of the binary tree that reinsertion tries to place better, mostly at the top. Rays were as fast with 0.02 and
 /// 0.2 to within what could be measured.

@@ -6,10 +6,9 @@
 use glam::Vec3;
 
 use super::Accel;
-use super::machine::{Lanes, Stack, WithLanes, with_best};
 use super::moving::{Moment, Moving, Standing};
 use super::traverse::{nearest_first, pop};
-use crate::geometry::triangle::squared_distance;
+use crate::geometry::machine::{Lanes, Stack, WithLanes, with_best};
 
 /// Heights over planes are relatively off by the error of the normal; this much is left out.
 const WITHIN_ROUNDING: f32 = 0.999;
@@ -55,9 +54,7 @@ impl<'a, M: Moment<'a>> WithLanes for Clearance<'a, M> {
                 }
             } else if let Some(index) = child.as_leaf() {
                 let (leaf, change) = moment.leaf(index);
-                for lane in 0..leaf.len() {
-                    least = least.min(squared_distance(point, &leaf.triangle(lane, change)));
-                }
+                least = leaf.squared_distances(change, &coordinates).least_below(least);
             }
             next = pop(&mut stack, least);
         }
@@ -68,7 +65,7 @@ impl<'a, M: Moment<'a>> WithLanes for Clearance<'a, M> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::machine::Portable;
+    use crate::geometry::portable::Portable;
     use crate::sampling::{SampleSeed, SampleStream};
 
     fn number(i: u32) -> Vec3 {

@@ -7,9 +7,10 @@
 use glam::{Vec3, Vec3A, Vec4};
 
 use super::TriangleId;
-use super::machine::{Eight, Lanes};
 use super::moving::{Change, Unchanged};
 use crate::geometry::Bounds;
+use crate::geometry::machine::{Eight, Lanes};
+use crate::geometry::nearness::squared_distances;
 use crate::geometry::triangle::{EdgeHit, GREATEST_NUMERATOR, LEAST_NUMERATOR, RayCast};
 
 /// Up to eight triangles over up to eight vertices: two cache lines.
@@ -135,6 +136,20 @@ impl Leaf {
     #[inline(always)]
     fn along<L: Lanes>(&self, change: impl Change<Self>, axis: usize) -> L {
         change.lanes(self, |leaf| &leaf.vertices[axis])
+    }
+
+    /// Squares of the distances from a point to the triangles; lanes behind them repeat the last.
+    #[inline(always)]
+    pub fn squared_distances<L: Lanes>(&self, change: impl Change<Self>, point: &[L; 3]) -> L {
+        let x = self.along::<L>(change, 0).sub(point[0]);
+        let y = self.along::<L>(change, 1).sub(point[1]);
+        let z = self.along::<L>(change, 2).sub(point[2]);
+        let [a, b, c] = &self.corners;
+        squared_distances([
+            [x.pick(a), y.pick(a), z.pick(a)],
+            [x.pick(b), y.pick(b), z.pick(b)],
+            [x.pick(c), y.pick(c), z.pick(c)],
+        ])
     }
 
     /// The triangles that the ray may meet; none that it does meet is left out.

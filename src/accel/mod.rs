@@ -6,7 +6,7 @@
 //! ([`crate::geometry::triangle`]) and ties by the lower index, so the answer does not depend on the tree: built,
 //! refitted, or built another way, it is the same to the last bit.
 //!
-//! The way of a ray: `machine` has the wide registers and all `unsafe` code, `node` the boxes, `leaf` the triangles,
+//! The way of a ray: `node` has the boxes, `leaf` the triangles,
 //! `traverse` the walk. The way of a mesh: `scales` parts it by size, `clusters` gathers triangles into leaves,
 //! `build` has the binary tree over them made, `collapse` makes it wide; `connectivity`, `update`, `refit` and `cost`
 //! lead from one frame to the next, and `moving` from the opening of the shutter to its closing.
@@ -19,7 +19,6 @@ mod collapse;
 mod connectivity;
 mod cost;
 mod leaf;
-mod machine;
 mod moving;
 mod node;
 mod refit;

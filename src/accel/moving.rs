@@ -12,9 +12,9 @@ use glam::Vec3;
 
 use super::Accel;
 use super::leaf::Leaf;
-use super::machine::{Eight, Lanes};
 use super::node::{Child, Node};
 use crate::geometry::Bounds;
+use crate::geometry::machine::{Eight, Lanes};
 use crate::geometry::triangle::{OUTER_PADDING, padding};
 
 /// Vertices and planes that move are rounded thrice or four times more, each time by a unit of at most twice the greatest

@@ -1,8 +1,8 @@
 //! Boxes of eight children.
 
-use super::machine::{Eight, Lanes};
 use super::moving::Change;
 use crate::geometry::Bounds;
+use crate::geometry::machine::{Eight, Lanes};
 use crate::geometry::triangle::{OUTER_PADDING, Slabs, padded};
 
 /// The boxes of eight children and where they are: four cache lines.

@@ -1,11 +1,11 @@
 //! Walks the tree: nearer children first, popped children culled again against the best hit so far.
 
 use super::leaf::{Candidates, Leaf, LeafRay};
-use super::machine::{Eight, Lanes, Stack, WithLanes, with_best};
 use super::moving::{Moment, Motion, Moving, Standing};
 use super::node::{Child, Node, NodeRay};
 use super::{Accel, Hit, MAX_DEPTH, TriangleId};
 use crate::geometry::Ray;
+use crate::geometry::machine::{Eight, Lanes, Stack, WithLanes, with_best};
 use crate::geometry::triangle::{RayCast, TriangleHit};
 
 /// Triangles that a ray must not meet: the one it starts on, the one it ends on.
@@ -220,7 +220,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::accel::machine::Portable;
+    use crate::geometry::portable::Portable;
     use crate::sampling::{SampleSeed, SampleStream, warp};
 
     /// A folded sheet with vertices at random places, and rays from and to everywhere.

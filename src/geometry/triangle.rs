@@ -288,28 +288,6 @@ pub fn scaled_normal(v: &[Vec3; 3]) -> Vec3 {
     (v[1] - v[0]).cross(v[2] - v[0])
 }
 
-/// Square of the distance from a point to a triangle.
-///
-/// Over the triangle that is the height over its plane, elsewhere the distance to the nearest edge; so it holds for
-/// triangles without area, too.
-pub fn squared_distance(p: Vec3, v: &[Vec3; 3]) -> f32 {
-    let n = scaled_normal(v);
-    let edges = [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])];
-    if edges.iter().all(|(a, b)| n.cross(b - a).dot(p - a) > 0.0) {
-        let height = n.dot(p - v[0]);
-        return height * height / n.length_squared();
-    }
-    edges.iter().map(|&(a, b)| squared_distance_to_segment(p, a, b)).fold(f32::INFINITY, f32::min)
-}
-
-fn squared_distance_to_segment(p: Vec3, a: Vec3, b: Vec3) -> f32 {
-    let along = b - a;
-    let s = (p - a).dot(along) / along.length_squared();
-    // A segment without length gives no number, which clamps to its start.
-    let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
-    (p - (a + along * s)).length_squared()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -399,19 +377,6 @@ mod tests {
             if let Some(hit) = cast(origin, target - origin).triangle(&v, f32::INFINITY) {
                 prop_assert!(hit.barycentric.min_element() >= 0.0 && hit.barycentric.max_element() < 1.0001, "{hit:?}");
             }
-        }
-
-        #[test]
-        fn the_distance_is_that_of_the_nearest_point(a in vector(), b in vector(), c in vector(), p in vector()) {
-            let squared = squared_distance(p * 2.0, &[a, b, c]);
-            let points = (0..=64).flat_map(|i| (0..=64 - i).map(move |j| (i as f32 / 64.0, j as f32 / 64.0)));
-            let sampled = points
-                .map(|(s, t)| (a * s + b * t + c * (1.0 - s - t)).distance_squared(p * 2.0))
-                .fold(f32::INFINITY, f32::min);
-            // The nearest point is within the spacing of the samples.
-            let spacing = (a - b).length().max((b - c).length()).max((c - a).length()) / 64.0;
-            prop_assert!(squared.sqrt() <= sampled.sqrt() + 1e-5);
-            prop_assert!(squared.sqrt() >= sampled.sqrt() - spacing - 1e-5);
         }
 
         #[test]

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use super::path::{Branch, Sample};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
+use crate::geometry::machine::Lanes as Wide;
 use crate::optics::dwivedi::LedFlight;
 use crate::optics::medium::MediumLanes;
 use crate::scene::surface::Surface;
@@ -37,10 +38,26 @@ impl Clearing {
     /// A ball of fewer mean free paths is soon left: the next is looked for later.
     const WORTH_A_SEARCH: f32 = 4.0;
 
+    #[cfg(test)]
+    pub(super) fn of_radius(radius: f32) -> Self {
+        Self { radius, ..Self::NONE }
+    }
+
     /// False without a ball.
     #[inline]
     pub(super) fn holds(&self, point: Vec3) -> bool {
         self.radius > 0.0 && point.distance_squared(self.centre) < self.radius * self.radius
+    }
+
+    /// How many of eight points, by axis, lie in the ball before the first that does not.
+    #[inline(always)]
+    pub(super) fn holds_first<L: Wide>(&self, points: &[L; 3]) -> usize {
+        let x = points[0].sub(L::splat(self.centre.x));
+        let y = points[1].sub(L::splat(self.centre.y));
+        let z = points[2].sub(L::splat(self.centre.z));
+        let squares = x.mul(x).add(y.mul(y)).add(z.mul(z));
+        let within = squares.at_most(L::splat(self.radius * self.radius));
+        within.trailing_ones() as usize
     }
 
     #[inline]

@@ -5,6 +5,7 @@
 
 #![doc = include_str!("thick_media.md")]
 
+mod ahead;
 pub mod ambient_occlusion;
 mod beneath;
 pub mod counters;

@@ -51,7 +51,7 @@ pub const HARD_LIMIT: u32 = 65_536;
 /// A walk that loses nothing leaves a half space after more than n steps with a chance like 1 / sqrt(n), and a slab after
 /// as many as its optical depth in the mean. So the roulette hardly touches bodies of less than a thousand mean free
 /// paths, and the mean length of walks without any way out is bounded.
-const LONG_WALK: u32 = 65_536;
+pub(super) const LONG_WALK: u32 = 65_536;
 /// No path goes on beyond this many interactions.
 pub(super) const LONGEST_WALK: u32 = 1 << 24;
 

@@ -1,7 +1,8 @@
 //! Random walks in a ball without surfaces, where nothing is traced and nothing shines: a loop of its own.
 //!
-//! Each turn draws what [`Sample::fly`] and [`Sample::scatter`] would draw from the same random numbers. It keeps the path
-//! in registers and brings directions back to unit length by a step of Newton's method for 1 / sqrt(d . d):
+//! Where flights and angles depend on nothing that the path has been through, [`super::ahead`] draws several collisions at a
+//! time. Elsewhere each turn draws what [`Sample::fly`] and [`Sample::scatter`] would draw from the same random numbers, keeps
+//! the path in registers and brings directions back to unit length by a step of Newton's method for 1 / sqrt(d . d):
 //!
 //! ```text
 //! d' = d (3 - d . d) / 2,   |d'| - 1 = -3/2 (|d| - 1)^2
@@ -13,6 +14,9 @@ use crate::optics::phase::PhaseFunction;
 impl Sample<'_> {
     /// Goes on with a path until its next flight would leave the ball, and leaves that flight to be drawn again.
     pub(super) fn walk(&mut self, branch: &mut Branch) -> Fate {
+        if self.walks_ahead(branch) {
+            return self.walk_ahead(branch);
+        }
         match &self.frame.medium(branch.medium).phase {
             phase @ PhaseFunction::Isotropic(_) => self.walk_by(branch, phase),
             phase @ PhaseFunction::HenyeyGreenstein(_) => self.walk_by(branch, phase),

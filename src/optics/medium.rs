@@ -198,9 +198,16 @@ impl MediumLanes {
         if pdf_d > 0.0 { self.sigma_s * transmittance / pdf_d } else { Lanes::ZERO }
     }
 
+    /// Distance of a free flight at u on average, in metres, and the weight of a collision at its end but for
+    /// [`MediumLanes::relative_transmittance`]; of nearly grey media only.
+    #[inline]
+    pub fn grey(&self) -> Option<(f32, Lanes)> {
+        self.grey.then_some((self.mean_free_path, self.albedo))
+    }
+
     /// exp(-(sigma_t - least sigma_t) d) of nearly grey media.
     #[inline]
-    fn relative_transmittance(&self, distance: f32) -> Lanes {
+    pub fn relative_transmittance(&self, distance: f32) -> Lanes {
         /// The first term of the series that is left out is x^4 / 24: 7e-9.
         const SMALL: f32 = 0.02;
         let x = self.excess * distance;

@@ -18,12 +18,18 @@
 //! and its own order (padding, `[BURLEY20 section 4]`). Late sets, which belong to deep bounces, are plain hashes.
 
 use super::sobol;
+use crate::geometry::machine::{Eight, Lanes, Word, Words};
 
 /// Independently scrambled replicates in a pixel.
 pub const REPLICATES: u32 = 4;
 
 /// Sets of four numbers that are stratified; later ones are independent.
 const STRATIFIED_SETS: u32 = 24;
+
+/// The fourth word that late sets are hashed from.
+const OF_LATE_SETS: u32 = 0x85eb_ca6b;
+/// The step between random numbers.
+const UNIT: f32 = 1.0 / 16_777_216.0;
 
 /// Everything but the pixel and the sample's index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,8 +94,34 @@ impl SampleStream {
         if set < STRATIFIED_SETS {
             self.stratified4(set)
         } else {
-            pcg4d([self.index, self.key, set, 0x85eb_ca6b]).map(unit_float)
+            pcg4d([self.index, self.key, set, OF_LATE_SETS]).map(unit_float)
         }
+    }
+
+    /// The next eight sets by number and set, none of which is taken yet.
+    #[inline(always)]
+    pub(crate) fn ahead<L: Lanes>(&self) -> [L; 4] {
+        if self.set < STRATIFIED_SETS {
+            let [a, b, c, d] = &self.ahead_one_by_one();
+            return [L::load(a), L::load(b), L::load(c), L::load(d)];
+        }
+        let sets = L::Words::splat(self.set).add(L::Words::lane_numbers());
+        let (index, key) = (L::Words::splat(self.index), L::Words::splat(self.key));
+        let [a, b, c, d] = pcg4d([index, key, sets, L::Words::splat(OF_LATE_SETS)]);
+        [unit_floats(a), unit_floats(b), unit_floats(c), unit_floats(d)]
+    }
+
+    #[inline(never)]
+    fn ahead_one_by_one(&self) -> [Eight; 4] {
+        let mut stream = *self;
+        let sets: [[f32; 4]; 8] = std::array::from_fn(|_| stream.next4());
+        std::array::from_fn(|number| Eight(sets.map(|set| set[number])))
+    }
+
+    /// Takes so many sets.
+    #[inline(always)]
+    pub fn skip(&mut self, sets: usize) {
+        self.set += sets as u32;
     }
 
     #[inline(never)]
@@ -121,7 +153,13 @@ fn key(seed: SampleSeed, x: u32, y: u32, replicate: u32) -> u32 {
 /// The 24 high bits as a number in [0, 1).
 #[inline]
 pub fn unit_float(bits: u32) -> f32 {
-    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+    (bits >> 8) as f32 * UNIT
+}
+
+/// The same of eight; by way of signed numbers, for which there is an instruction.
+#[inline(always)]
+fn unit_floats<W: Words>(bits: W) -> W::Lanes {
+    bits.shifted_right::<8>().signed_value().mul(Lanes::splat(UNIT))
 }
 
 /// Mixes `value` into `state`; every bit of both reaches every bit of the result.
@@ -137,24 +175,65 @@ pub fn hash_pair(state: u32, value: u32) -> u32 {
 }
 
 /// Four hashes of four words `[JARZYNSKI20 listing 9]`.
-#[inline]
-fn pcg4d(words: [u32; 4]) -> [u32; 4] {
-    let mixed = pcg4d_round(words.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
-    pcg4d_round(mixed.map(|v| v ^ (v >> 16)))
+#[inline(always)]
+fn pcg4d<W: Word>([x, y, z, w]: [W; 4]) -> [W; 4] {
+    let [x, y, z, w] = pcg4d_round([stepped(x), stepped(y), stepped(z), stepped(w)]);
+    pcg4d_round([folded(x), folded(y), folded(z), folded(w)])
 }
 
-#[inline]
-fn pcg4d_round([mut x, mut y, mut z, mut w]: [u32; 4]) -> [u32; 4] {
-    x = x.wrapping_add(y.wrapping_mul(w));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    w = w.wrapping_add(y.wrapping_mul(z));
+#[inline(always)]
+fn stepped<W: Word>(word: W) -> W {
+    word.mul(W::splat(1_664_525)).add(W::splat(1_013_904_223))
+}
+
+#[inline(always)]
+fn folded<W: Word>(word: W) -> W {
+    word.xor(word.shifted_right::<16>())
+}
+
+#[inline(always)]
+fn pcg4d_round<W: Word>([mut x, mut y, mut z, mut w]: [W; 4]) -> [W; 4] {
+    x = x.add(y.mul(w));
+    y = y.add(z.mul(x));
+    z = z.add(x.mul(y));
+    w = w.add(y.mul(z));
     [x, y, z, w]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::machine::{WithLanes, with_best};
+    use crate::geometry::portable::Portable;
+
+    struct Ahead(SampleStream);
+
+    impl WithLanes for Ahead {
+        type Output = [Eight; 4];
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> [Eight; 4] {
+            self.0.ahead::<L>().map(|numbers| {
+                let mut all = Eight([0.0; 8]);
+                numbers.store(&mut all);
+                all
+            })
+        }
+    }
+
+    #[test]
+    fn what_is_drawn_ahead_is_what_comes() {
+        let mut ahead = SampleStream::new(SEED, 1, 2, 5);
+        let mut stream = ahead;
+        for taken in (0..40).map(|i| i % 9) {
+            let sets = with_best(Ahead(ahead));
+            assert_eq!(sets, Ahead(ahead).run::<Portable>());
+            for set in 0..taken {
+                assert_eq!([0, 1, 2, 3].map(|number| sets[number].0[set]), stream.next4());
+            }
+            ahead.skip(taken);
+        }
+    }
 
     const SEED: SampleSeed = SampleSeed { seed: 7, frame: 3, turn: 0, stride: 64 };
 

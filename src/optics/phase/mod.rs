@@ -50,6 +50,7 @@ pub use two_term_henyey_greenstein::TwoTermHenyeyGreenstein;
 pub use two_term_schlick::TwoTermSchlick;
 
 use crate::geometry::Frame;
+use crate::geometry::machine::{Eight, Lanes};
 
 /// Any phase function. Copies share their tables.
 #[derive(Clone, Debug, PartialEq)]
@@ -215,6 +216,20 @@ impl PhaseFunction {
         (Frame::around(forward).to_world(deflection.around_z(u[1])), weight)
     }
 
+    /// Cosines and sines of the angles of deflection that [`PhaseFunction::turn`] draws with eight numbers, and their
+    /// weights.
+    #[inline(always)]
+    pub(crate) fn eight<L: Lanes>(&self, u: L) -> (L, L, L) {
+        if let Self::HenyeyGreenstein(lobe) = self {
+            let (cos, sin) = lobe.sample_eight(u);
+            return (cos, sin, L::splat(1.0));
+        }
+        let mut all = Eight([0.0; 8]);
+        u.store(&mut all);
+        let [cos, sin, weights] = &self.any_eight(&all);
+        (L::load(cos), L::load(sin), L::load(weights))
+    }
+
     /// Mean cosine of the angle of deflection; positive is forward.
     pub fn mean_cosine(&self) -> f32 {
         each!(self, lobe => lobe.mean_cosine())
@@ -239,6 +254,13 @@ impl PhaseFunction {
     #[inline(never)]
     fn any_weighted(&self, u: f32) -> (Deflection, f32) {
         each!(self, lobe => lobe.weighted(u))
+    }
+
+    #[inline(never)]
+    fn any_eight(&self, u: &Eight) -> [Eight; 3] {
+        let drawn = each!(self, lobe => u.0.map(|u| lobe.weighted(u)));
+        let (cos, sin) = (drawn.map(|(turned, _)| turned.cosine()), drawn.map(|(turned, _)| turned.sine()));
+        [cos, sin, drawn.map(|(_, weight)| weight)].map(Eight)
     }
 
     #[inline(never)]

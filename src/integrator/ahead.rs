@@ -1,0 +1,310 @@
+//! Random walks in a ball through nearly grey media: eight collisions at a time.
+//!
+//! There flights and angles depend on nothing that the path has been through. So those of the next collisions are drawn
+//! together in wide registers, from the numbers that [`Sample::walk`] would take for them one after the other. How far the
+//! path has come at collision k, and what is left of it, are
+//!
+//! ```text
+//! l = sum of l_i,   w = (sigma_s / sigma_t)^k exp(-(sigma - sigma_t) l)     over i = 1 .. k
+//! ```
+//! with the extinction sigma_t of the clearest lane and sigma of each. Russian roulette is played once for all of them.
+//! Where scattering is even, places are sums, too: p_k = p_0 + sum of l_i d_(i-1). Elsewhere the path takes a frame of
+//! axes along, which a collision turns by the angles theta and phi,
+//!
+//! ```text
+//! r = s cos phi + t sin phi,   d' = d cos theta + r sin theta,   s' = r cos theta - d sin theta,   t' = t cos phi - s sin phi
+//! ```
+//! and which is made anew after eight of them, so that no errors add up.
+
+use glam::{Vec3, Vec3A};
+
+use super::flight::Clearing;
+use super::path::{Branch, Fate, LONG_WALK, Sample};
+use crate::geometry::Frame;
+use crate::geometry::machine::{Eight, Lanes as Wide, WithLanes, with_best};
+use crate::geometry::wide::{minus_ln_of_rest, sin_cos_of_turn};
+use crate::optics::medium::MediumLanes;
+use crate::optics::phase::PhaseFunction;
+use crate::spectrum::Lanes;
+
+/// Collisions at a time.
+const AHEAD: usize = 8;
+
+impl Sample<'_> {
+    /// False in coloured media, from a walk's last collisions on, and from the roulette of long walks on.
+    #[inline]
+    pub(super) fn walks_ahead(&self, branch: &Branch) -> bool {
+        let medium = &self.scratch.media[branch.medium.0 as usize];
+        medium.grey().is_some() && branch.interactions < self.last_ahead()
+    }
+
+    #[inline]
+    fn last_ahead(&self) -> u32 {
+        self.max_depth.min(LONG_WALK).saturating_sub(AHEAD as u32)
+    }
+
+    /// Goes on with a path as [`Sample::walk`] does.
+    pub(super) fn walk_ahead(&mut self, branch: &mut Branch) -> Fate {
+        let medium = self.scratch.media[branch.medium.0 as usize];
+        let Some((mean_free_path, albedo)) = medium.grey() else { return Fate::GoesOn };
+        let phase = &self.frame.medium(branch.medium).phase;
+        let (clearing, last) = (self.scratch.around.clearing, self.last_ahead());
+        let before = branch.interactions;
+        let walk = Walk { medium, mean_free_path, albedo, clearing, last, branch };
+        let fate = match phase {
+            PhaseFunction::Isotropic(_) => with_best(Turning { walk, turns: Evenly }),
+            phase @ PhaseFunction::HenyeyGreenstein(_) => with_best(Turning { walk, turns: By(phase) }),
+            phase => with_best(Turning { walk, turns: By(phase) }),
+        };
+        self.scratch.counters.untraced += u64::from(branch.interactions - before);
+        fate
+    }
+}
+
+struct Walk<'a> {
+    medium: MediumLanes,
+    mean_free_path: f32,
+    /// What a collision leaves of the clearest lane's flights, by lane.
+    albedo: Lanes,
+    clearing: Clearing,
+    /// The interactions from which on there may not be so many more.
+    last: u32,
+    branch: &'a mut Branch,
+}
+
+/// A walk whose collisions turn it in some way.
+struct Turning<'a, T> {
+    walk: Walk<'a>,
+    turns: T,
+}
+
+/// How collisions turn a path.
+trait Turns {
+    /// Takes a path to the last of its next collisions in the ball, given how far it flies to each and what their angles
+    /// are drawn from.
+    fn go<L: Wide>(&self, branch: &mut Branch, clearing: &Clearing, flights: L, u: [L; 2]) -> Gone;
+}
+
+/// What a path has come through.
+#[derive(Clone, Copy)]
+struct Gone {
+    collisions: usize,
+    length: f32,
+    /// Product of the angles' weights.
+    weight: f32,
+}
+
+impl<T: Turns> WithLanes for Turning<'_, T> {
+    type Output = Fate;
+
+    #[inline(always)]
+    fn run<L: Wide>(self) -> Fate {
+        let Walk { medium, mean_free_path, albedo, clearing, last, branch: walked } = self.walk;
+        let mut powers = [albedo; AHEAD];
+        for i in 1..AHEAD {
+            powers[i] = powers[i - 1] * albedo;
+        }
+        let mut branch = *walked;
+        let mut fate = Fate::GoesOn;
+        while branch.interactions < last {
+            let u = branch.stream.ahead::<L>();
+            let flights = minus_ln_of_rest(u[0]).mul(L::splat(mean_free_path));
+            let gone = self.turns.go(&mut branch, &clearing, flights, [u[1], u[2]]);
+            if gone.collisions == 0 {
+                break;
+            }
+            let end = gone.collisions - 1;
+            branch.stream.skip(gone.collisions);
+            branch.throughput *= powers[end] * medium.relative_transmittance(gone.length) * gone.weight;
+            branch.interactions += end as u32;
+            fate = branch.goes_on(number(u[3], end));
+            if fate == Fate::Ends || gone.collisions < AHEAD {
+                break;
+            }
+        }
+        *walked = branch;
+        fate
+    }
+}
+
+/// Into every direction alike.
+struct Evenly;
+
+impl Turns for Evenly {
+    #[inline(always)]
+    fn go<L: Wide>(&self, branch: &mut Branch, clearing: &Clearing, flights: L, u: [L; 2]) -> Gone {
+        let one_minus_cos = u[0].add(u[0]);
+        let sine = one_minus_cos.mul(L::splat(2.0).sub(one_minus_cos)).sqrt();
+        let (sin, cos) = sin_cos_of_turn(u[1]);
+        let directions = [sine.mul(cos), sine.mul(sin), L::splat(1.0).sub(one_minus_cos)];
+        let points = [
+            collisions(branch.origin.x, branch.direction.x, directions[0], flights),
+            collisions(branch.origin.y, branch.direction.y, directions[1], flights),
+            collisions(branch.origin.z, branch.direction.z, directions[2], flights),
+        ];
+        let collisions = clearing.holds_first(&points);
+        let Some(end) = collisions.checked_sub(1) else { return Gone::NOWHERE };
+        branch.origin = vector(&points, end);
+        branch.direction = vector(&directions, end);
+        Gone { collisions, length: number(flights.running_sums(), end), weight: 1.0 }
+    }
+}
+
+/// Coordinates of the ends of flights of which the first goes along `first`, the others along where the one before was
+/// turned.
+#[inline(always)]
+fn collisions<L: Wide>(origin: f32, first: f32, turned: L, flights: L) -> L {
+    L::splat(origin).add(turned.preceded_by(first).mul(flights).running_sums())
+}
+
+/// By the angles of a phase function.
+struct By<'a>(&'a PhaseFunction);
+
+impl Turns for By<'_> {
+    #[inline(always)]
+    fn go<L: Wide>(&self, branch: &mut Branch, clearing: &Clearing, flights: L, u: [L; 2]) -> Gone {
+        let (cos_theta, sin_theta, weights) = self.0.eight(u[0]);
+        let (sin_phi, cos_phi) = sin_cos_of_turn(u[1]);
+        let (cos_theta, sin_theta) = (stored(cos_theta), stored(sin_theta));
+        let (cos_phi, sin_phi) = (stored(cos_phi), stored(sin_phi));
+        let (flights, weights) = (stored(flights), stored(weights));
+        let Frame { s, t, n } = Frame::around(branch.direction);
+        let (mut s, mut t, mut direction) = (Vec3A::from(s), Vec3A::from(t), Vec3A::from(n));
+        let mut origin = Vec3A::from(branch.origin);
+        let mut gone = Gone::NOWHERE;
+        for i in 0..AHEAD {
+            let point = origin + direction * flights.0[i];
+            if !clearing.holds(point.into()) {
+                break;
+            }
+            let r = s * cos_phi.0[i] + t * sin_phi.0[i];
+            t = t * cos_phi.0[i] - s * sin_phi.0[i];
+            s = r * cos_theta.0[i] - direction * sin_theta.0[i];
+            direction = direction * cos_theta.0[i] + r * sin_theta.0[i];
+            origin = point;
+            gone.collisions += 1;
+            gone.length += flights.0[i];
+            gone.weight *= weights.0[i];
+        }
+        branch.origin = origin.into();
+        let direction = Vec3::from(direction);
+        // A step of Newton's method for 1 / sqrt(d . d).
+        branch.direction = direction * (1.5 - 0.5 * direction.length_squared());
+        gone
+    }
+}
+
+impl Gone {
+    const NOWHERE: Self = Self { collisions: 0, length: 0.0, weight: 1.0 };
+}
+
+#[inline(always)]
+fn vector<L: Wide>(of: &[L; 3], lane: usize) -> Vec3 {
+    Vec3::new(number(of[0], lane), number(of[1], lane), number(of[2], lane))
+}
+
+#[inline(always)]
+fn number<L: Wide>(of: L, lane: usize) -> f32 {
+    stored(of).0[lane & 7]
+}
+
+#[inline(always)]
+fn stored<L: Wide>(lanes: L) -> Eight {
+    let mut all = Eight([0.0; 8]);
+    lanes.store(&mut all);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::portable::Portable;
+    use crate::optics::density::Density;
+    use crate::optics::medium::Medium;
+    use crate::optics::phase::{HenyeyGreenstein, Isotropic};
+    use crate::sampling::{SampleSeed, SampleStream};
+    use crate::spectrum::{LaneCurve, Wavelengths};
+
+    fn milk() -> MediumLanes {
+        let medium = Medium {
+            name: "milk".into(),
+            n: 1.3,
+            sigma_a: LaneCurve::Rgb(Lanes::new(0.1, 0.02, 0.002, 0.0)),
+            sigma_s: LaneCurve::Constant(120.0),
+            emission: LaneCurve::Constant(0.0),
+            phase: PhaseFunction::Isotropic(Isotropic),
+            density: Density::Homogeneous,
+        };
+        medium.lanes(&Wavelengths::RGB)
+    }
+
+    fn walk(medium: MediumLanes, clearing: Clearing, branch: &mut Branch) -> Turning<'_, Evenly> {
+        let (mean_free_path, albedo) = medium.grey().unwrap();
+        let walk = Walk { medium, mean_free_path, albedo, clearing, last: 1000, branch };
+        Turning { walk, turns: Evenly }
+    }
+
+    /// Each of less than 1008 collisions adds a rounding of some 1e-7 of the ball's radius, and one of the weight: 3e-6.
+    #[test]
+    fn even_collisions_are_those_that_are_drawn_one_after_the_other() {
+        let medium = milk();
+        let phase = PhaseFunction::Isotropic(Isotropic);
+        for i in 0..200 {
+            let radius = 0.02 * (1 + i % 5) as f32;
+            let clearing = Clearing::of_radius(radius);
+            let stream = SampleStream::new(SampleSeed::new(3), i, 0, 0);
+            let start = Branch::new(Vec3::ZERO, Vec3::X, stream);
+            let (mut ahead, mut portable, mut one) = (start, start, start);
+            let fate = with_best(walk(medium, clearing, &mut ahead));
+            let same = walk(medium, clearing, &mut portable).run::<Portable>();
+            assert_eq!((fate, format!("{ahead:?}")), (same, format!("{portable:?}")));
+            for _ in 0..ahead.interactions {
+                let u = one.stream.next4();
+                let flight = medium.free_flight(one.throughput, u[0]);
+                one.origin += one.direction * flight.distance;
+                assert!(one.origin.length() < 1.00001 * radius);
+                one.direction = phase.turn(one.direction, [u[1], u[2]]).0;
+                one.throughput *= medium.scatter_weight(&flight);
+            }
+            assert!(ahead.origin.distance(one.origin) < 1e-5 * radius, "{} {}", ahead.origin, one.origin);
+            assert!(ahead.direction.distance(one.direction) < 1e-6);
+            assert!((ahead.throughput / one.throughput - 1.0).truncate().abs().max_element() < 1e-5);
+            let next = medium.free_flight(one.throughput, one.stream.next4()[0]).distance;
+            let is_left = (one.origin + one.direction * next).length() > 0.99999 * radius;
+            assert!(is_left || ahead.interactions >= 1000, "{i}: {}", ahead.interactions);
+        }
+    }
+
+    /// The path that has turned k times, k = 0 .. 8, shows the angles between its directions, and those between the
+    /// planes of two turns: d_(k+1) . (d_k cos theta_k - d_(k-1)) = sin theta_k sin theta_(k+1) cos phi_(k+1).
+    #[test]
+    fn other_collisions_turn_the_path_by_the_angles_that_are_drawn() {
+        for (g, seed) in [0.0, 0.86, -0.5].into_iter().flat_map(|g| (0..50).map(move |seed| (g, seed))) {
+            let phase = PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g });
+            let stream = SampleStream::new(SampleSeed::new(4), seed, 0, 0);
+            let [_, u, v, _] = stream.ahead::<Portable>();
+            let forward = phase.turn(Vec3::Z, [stored(v).0[0], stored(u).0[0]]).0.normalize();
+            let directions: Vec<Vec3> = (0..=AHEAD)
+                .map(|turns| {
+                    let flights = Eight(std::array::from_fn(|i| if i < turns { 0.1 } else { 10.0 }));
+                    let mut branch = Branch::new(Vec3::ZERO, forward, stream);
+                    let clearing = Clearing::of_radius(1.0);
+                    let gone = By(&phase).go(&mut branch, &clearing, Portable::load(&flights), [u, v]);
+                    assert!(gone.collisions == turns && (gone.length - 0.1 * turns as f32).abs() < 1e-6);
+                    branch.direction
+                })
+                .collect();
+            let (cos, sin, _) = phase.eight(u);
+            let (cos, sin, cos_phi) = (stored(cos).0, stored(sin).0, stored(sin_cos_of_turn(v).1).0);
+            for k in 0..AHEAD {
+                let d = |turns: usize| directions[turns];
+                assert!((d(k).dot(d(k + 1)) - cos[k]).abs() < 2e-6, "{g}: turn {k}");
+                assert!((d(k + 1).length() - 1.0).abs() < 1e-6);
+                if k > 0 {
+                    let across = d(k + 1).dot(d(k) * cos[k - 1] - d(k - 1));
+                    assert!((across - sin[k - 1] * sin[k] * cos_phi[k]).abs() < 4e-6, "{g}: plane {k}");
+                }
+            }
+        }
+    }
+}
