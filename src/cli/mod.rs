@@ -4,6 +4,7 @@ mod duration;
 mod encode;
 mod exit;
 mod info;
+mod optics;
 mod progress;
 mod render;
 mod screen;
@@ -46,6 +47,8 @@ enum Command {
     Info(info::InfoArguments),
     /// Make a movie, or a sheet of small pictures, of what was rendered
     Encode(encode::EncodeArguments),
+    /// Print what particles scatter and absorb
+    Optics(optics::OpticsArguments),
     /// Render frames in several ways and measure how they differ
     Study(study::StudyArguments),
 }
@@ -64,6 +67,7 @@ fn dispatch() -> Exit {
             Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
             Command::Encode(arguments) => encode::run(&arguments),
+            Command::Optics(arguments) => optics::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
         },
         Err(error) => {

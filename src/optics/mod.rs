@@ -10,6 +10,7 @@ pub mod density;
 pub mod dwivedi;
 pub mod fresnel;
 pub mod ice;
+pub mod lorenz_mie;
 pub mod medium;
 pub mod phase;
 pub mod refraction;

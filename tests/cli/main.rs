@@ -5,6 +5,7 @@ mod encode;
 mod folders;
 mod integrators;
 mod meshes;
+mod optics;
 mod preview;
 mod similarity;
 #[path = "../small/mod.rs"]
