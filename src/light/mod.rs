@@ -25,6 +25,7 @@ pub mod sun;
 pub use area::AreaLights;
 pub use beneath::Beneath;
 pub use environment::Environment;
+pub(crate) use picture::read_exr;
 pub use picture::{ImageError, Picture};
 pub use sun::Sun;
 

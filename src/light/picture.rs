@@ -1,8 +1,11 @@
 //! Reads pictures of the sky: OpenEXR and Radiance HDR.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use image::codecs::hdr::HdrDecoder;
+use image::{DynamicImage, ImageDecoder};
 
 /// Linear Rec. 709 RGB, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,8 +84,16 @@ impl Picture {
     }
 }
 
-fn read_exr(bytes: &[u8]) -> Result<Picture, String> {
+/// Reads the colours of an OpenEXR file, of any values.
+///
+/// # Errors
+/// The decoder's reason, in words.
+pub(crate) fn read_exr(bytes: &[u8]) -> Result<Picture, String> {
     use exr::prelude::*;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    for header in &meta.headers {
+        check_size([header.layer_size.width(), header.layer_size.height()], bytes)?;
+    }
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -95,16 +106,54 @@ fn read_exr(bytes: &[u8]) -> Result<Picture, String> {
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
-        .from_buffered(std::io::Cursor::new(bytes))
+        .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
     let (width, texels) = image.layer_data.channel_data.pixels;
     Ok(Picture { width, height: texels.len() / width.max(1), texels })
 }
 
 fn read_hdr(bytes: &[u8]) -> Result<Picture, String> {
-    let decoder = image::codecs::hdr::HdrDecoder::new(bytes).map_err(|e| e.to_string())?;
-    let rgb = image::DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?.into_rgb32f();
-    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
+    let decoder = HdrDecoder::new(bytes).map_err(|e| e.to_string())?;
+    let (width, height) = decoder.dimensions();
+    check_size([width as usize, height as usize], bytes)?;
+    let rgb = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?.into_rgb32f();
     let texels = rgb.pixels().map(|p| Vec3::from_array(p.0)).collect();
-    Ok(Picture { width, height, texels })
+    Ok(Picture { width: width as usize, height: height as usize, texels })
+}
+
+/// Refuses a size of which no file of so many bytes holds the pixels, before memory is asked for.
+///
+/// Deflate packs a thousand bytes into one at most, of pixels that are all alike: 170 pixels of half precision. A small
+/// file may have 4096 x 4096.
+fn check_size([width, height]: [usize; 2], bytes: &[u8]) -> Result<(), String> {
+    let most = (1 << 24) + 200 * bytes.len();
+    match width.checked_mul(height) {
+        Some(pixels) if pixels <= most => Ok(()),
+        _ => Err(format!(
+            "{width} x {height} pixels are declared, more than {} bytes can hold: the file is truncated or its header wrong",
+            bytes.len()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(bytes: &[u8]) -> String {
+        Picture::read_bytes(bytes, Path::new("sky")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn sizes_that_the_file_cannot_hold_are_refused_before_memory_is_asked_for() {
+        let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 200000 +X 300000\n";
+        assert!(refused(header).contains("300000 x 200000 pixels are declared"), "{}", refused(header));
+
+        let mut exr = std::fs::read("sequences/iceberg/sky.exr").unwrap();
+        let name = b"dataWindow\0box2i\0";
+        let at = exr.windows(name.len()).position(|bytes| bytes == name).unwrap() + name.len() + 4;
+        // The greatest x and y of the window.
+        exr[at + 8..at + 16].copy_from_slice(&[0, 0, 4, 0, 0, 0, 4, 0]);
+        assert!(refused(&exr).contains("pixels are declared"), "{}", refused(&exr));
+    }
 }

@@ -1,0 +1,4 @@
+//! Tetrahedra of deformable simplicial complexes.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| floe_fuzz::mesh(floe::mesh::Syntax::Dsc, false, bytes));

@@ -1,0 +1,4 @@
+//! Meshes compressed with gzip.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| floe_fuzz::mesh(floe::mesh::Syntax::Ply, true, bytes));

@@ -1,0 +1,4 @@
+//! PLY.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| floe_fuzz::mesh(floe::mesh::Syntax::Ply, false, bytes));
