@@ -19,7 +19,7 @@
 //! for pictures that are made by a formula, and means agree to 2e-7, pixels to 1.4e-6.
 
 mod colours;
-mod exposures;
+pub mod exposures;
 mod filters;
 
 use glam::Vec3;
