@@ -122,6 +122,8 @@ mod tests {
         assert_eq!(read.colours, [Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.25, 2.0, 7.0)]);
         assert_eq!((read.alpha, read.variances, read.samples), (None, None, None));
         assert_eq!((read.rounding, read.shares_noise), (ROUNDING[0], false));
+        let single = ["R", "G", "B"].map(|name| (name, FlatSamples::F32(vec![1.0, 0.25])));
+        assert_eq!(read_layers(&file(&single)).unwrap().rounding, ROUNDING[1]);
     }
 
     #[test]
