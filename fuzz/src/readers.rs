@@ -61,6 +61,9 @@ pub fn picture(bytes: &[u8]) {
         assert_eq!(picture.texels.len(), picture.width * picture.height);
         assert!(picture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0));
     }
+    if let Ok(layers) = floe::film::exr_layers::read_layers(bytes) {
+        assert_eq!(layers.colours.len(), layers.width * layers.height);
+    }
     if let Ok(image) = floe::film::exr_read::read_colours(bytes) {
         assert_eq!(image.pixels.len(), image.width as usize * image.height as usize);
     }

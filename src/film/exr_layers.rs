@@ -9,6 +9,7 @@ use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
 use glam::Vec3;
 
 use super::exr_seal::{CHECKSUM, check_seal, text_attribute};
+use crate::light::check_exr_size;
 
 /// A picture that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,7 @@ pub fn read_layers(bytes: &[u8]) -> Result<StoredPicture, String> {
     if text_attribute(bytes, CHECKSUM).is_some() {
         check_seal(bytes)?;
     }
+    check_exr_size(bytes)?;
     let layer = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()

@@ -25,8 +25,8 @@ pub mod sun;
 pub use area::AreaLights;
 pub use beneath::Beneath;
 pub use environment::Environment;
-pub(crate) use picture::read_exr;
 pub use picture::{ImageError, Picture};
+pub(crate) use picture::{check_exr_size, read_exr};
 pub use sun::Sun;
 
 use glam::Vec3;

@@ -90,10 +90,7 @@ impl Picture {
 /// The decoder's reason, in words.
 pub(crate) fn read_exr(bytes: &[u8]) -> Result<Picture, String> {
     use exr::prelude::*;
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
-    for header in &meta.headers {
-        check_size([header.layer_size.width(), header.layer_size.height()], bytes)?;
-    }
+    check_exr_size(bytes)?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -119,6 +116,17 @@ fn read_hdr(bytes: &[u8]) -> Result<Picture, String> {
     let rgb = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?.into_rgb32f();
     let texels = rgb.pixels().map(|p| Vec3::from_array(p.0)).collect();
     Ok(Picture { width: width as usize, height: height as usize, texels })
+}
+
+/// Refuses an OpenEXR file that declares more pixels than it can hold.
+///
+/// # Errors
+/// What it declares, or why its header cannot be read, in words.
+pub(crate) fn check_exr_size(bytes: &[u8]) -> Result<(), String> {
+    let meta =
+        exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    let sizes = meta.headers.iter().map(|header| header.layer_size);
+    sizes.into_iter().try_for_each(|size| check_size([size.width(), size.height()], bytes))
 }
 
 /// Refuses a size of which no file of so many bytes holds the pixels, before memory is asked for.
