@@ -288,7 +288,7 @@ mod tests {
     }
 
     /// Half of the variance is the same in all pixels. That one number is known from three degrees of freedom instead of
-    /// five: 356 of 400 were measured, and 35 would be held if the pixels were taken for independent.
+    /// five: 356 of 400 were measured, and 102 when the pixels were taken for independent.
     #[test]
     fn intervals_hold_an_error_that_all_pixels_share() {
         let mut random = SplitMix(13);

@@ -13,14 +13,17 @@
 ///
 /// The upper one is infinite where (1) has no solution: below a degree or so.
 pub fn interval(d1: f64, d2: f64, probability: f64) -> (f64, f64) {
-    let z2 = two_sided_normal_quantile(probability).powi(2);
+    let z = two_sided_normal_quantile(probability);
+    let z2 = z * z;
     let (spread2, spread1) = (2.0 / (9.0 * d2), 2.0 / (9.0 * d1));
     let (a, b) = (1.0 - spread2, 1.0 - spread1);
     // (1) squared: p w^2 - 2 a b w + q = 0.
     let (p, q) = (a * a - z2 * spread2, b * b - z2 * spread1);
     let root = a * b + (a * a * b * b - p * q).max(0.0).sqrt();
-    let low = if q > 0.0 && b > 0.0 { (q / root).powi(3) } else { 0.0 };
-    let high = if p > 0.0 && a > 0.0 { (root / p).powi(3) } else { f64::INFINITY };
+    // Not `powi`, whose last bit is the platform's.
+    let cube = |w: f64| w * w * w;
+    let low = if q > 0.0 && b > 0.0 { cube(q / root) } else { 0.0 };
+    let high = if p > 0.0 && a > 0.0 { cube(root / p) } else { f64::INFINITY };
     (low, high)
 }
 
