@@ -30,6 +30,7 @@ fn frame(width: u32, height: u32) -> FrameImage {
             motion: Vec2::new(-8.0 * t, 0.5),
             variance: Vec3::new(1e-4 * t, 1e-6, 1e-8),
             luminance_variance: 1e-6,
+            deviations: [5e-4, -5e-4, 5e-4, -5e-4],
             samples: 64 + (i % 3) as u32,
             replicates: 4,
             rejected: 0,

@@ -308,6 +308,15 @@ fn one_sample_has_no_known_error() {
 }
 
 #[test]
+fn an_error_that_hangs_on_few_samples_is_told() {
+    let lava = "[media.water]\nabsorption = 8\nscattering = 20\nemission = 3\n[sky]\nradiance = 0\n";
+    let (record, _) = picture(lava, &water(cube()));
+    assert!(record.warnings.join("\n").contains("(fireflies): it is"), "{:?}", record.warnings);
+    let (record, _) = picture("", &water(cube()));
+    assert!(record.warnings.is_empty(), "{:?}", record.warnings);
+}
+
+#[test]
 fn a_mesh_that_is_inside_out_is_mended_with_a_warning() {
     let mut turned = cube();
     turned.triangles.iter_mut().for_each(|t| t.swap(1, 2));

@@ -77,12 +77,11 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
     let errors: Vec<f64> = done.iter().filter_map(|r| r.relative_error).map(|e| e.estimate).collect();
     let mean = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
     let percent = |part: f64| 100.0 * part;
-    let interval = format!(
-        "{:.2} to {:.2} % at {:.0} % confidence",
-        percent(worst.low),
-        percent(worst.high),
-        percent(worst.confidence)
-    );
+    let range = match worst.high.is_finite() {
+        true => format!("{:.2} to {:.2} %", percent(worst.low), percent(worst.high)),
+        false => format!("at least {:.2} %", percent(worst.low)),
+    };
+    let interval = format!("{range} at {:.0} % confidence", percent(worst.confidence));
     Some(if errors.len() == 1 {
         format!("estimated relative error {:.2} % ({interval})", percent(mean))
     } else {

@@ -82,11 +82,11 @@ pub struct FrameRecord {
 /// Estimate and confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RelativeError {
-    /// Root of the mean relative variance.
+    /// Estimate of the root of the mean relative squared error of this picture.
     pub estimate: f64,
     /// Lower end of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end; `null` in the ledger where there is none.
     pub high: f64,
     /// Its confidence.
     pub confidence: f64,

@@ -17,7 +17,7 @@ use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
 use crate::film::write::remove_abandoned;
 use crate::film::{DEFAULT_CONFIDENCE, Denoiser, FrameImage, ImageMetadata, estimate_error, write_frame};
-use crate::integrator::Counters;
+use crate::integrator::{Counters, Integrator};
 use crate::scene::assembly::Assembled;
 use crate::scene::camera::Camera;
 use crate::scene::description::{Aov, RenderDescription};
@@ -189,7 +189,18 @@ impl<'a> Session<'a> {
         let (image, counters) = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
         record.samples = image.samples();
-        record.relative_error = estimate_error(&image, DEFAULT_CONFIDENCE).map(Into::into);
+        let error = estimate_error(&image, DEFAULT_CONFIDENCE);
+        record.relative_error = error.map(Into::into);
+        // That a preview is noisy is no news.
+        if let Some(doubt) = error.and_then(|e| e.warning()).filter(|_| checkpoint.is_some()) {
+            let cure = match self.sampling.integrator {
+                Integrator::Photon(_) => "more samples tell",
+                _ => "more samples tell, and integrator = \"photon\" finds what chance does not",
+            };
+            let text = format!("frame {}: {doubt}; {cure}", task.number);
+            self.observer.warning(&text);
+            record.warnings.push(text);
+        }
         if counters.too_many_mismatches() {
             let (mismatches, rays) = (counters.label_mismatches, counters.rays);
             let scene = &self.job.world.description.file;

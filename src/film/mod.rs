@@ -30,18 +30,20 @@ pub mod exr_read;
 pub mod exr_seal;
 pub mod filter;
 pub mod frame_image;
+mod local_luminance;
 pub mod metadata;
 pub mod png;
 #[cfg(test)]
 mod splitmix;
 pub mod tonemap;
+mod variance_ratio;
 pub mod write;
 mod write_frame;
 
 pub use accumulate::{FAR_DEPTH, FilmSample, Pixel, PixelAccumulator, REPLICATES};
 pub use denoise::{DenoiseError, Denoiser};
 pub use error::FilmError;
-pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, estimate_error};
+pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, LUMINANCE_FLOOR, estimate_error};
 pub use filter::Filter;
 pub use frame_image::{FrameImage, Tile, TileRect, tiles};
 pub use metadata::ImageMetadata;
