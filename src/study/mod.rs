@@ -3,10 +3,12 @@
 //! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
 //! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
 //! * [`table`] writes results for people and for programs.
+//! * [`stability`] compares with what is known, where a parameter makes a scene hard.
 #![doc = include_str!("temporal.md")]
 
 pub mod error;
 pub mod seed_modes;
+pub mod stability;
 pub mod table;
 pub mod temporal;
 
