@@ -2,10 +2,12 @@
 //!
 //! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
 //! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
+//! * [`plot`] draws results.
 //! * [`table`] writes results for people and for programs.
 #![doc = include_str!("temporal.md")]
 
 pub mod error;
+pub mod plot;
 pub mod seed_modes;
 pub mod table;
 pub mod temporal;
