@@ -17,10 +17,10 @@ pub(super) struct StabilityArguments {
     #[arg(long, group = "mode")]
     stability: bool,
     /// Only this group of cases; several with several --only
-    #[arg(long, value_name = "GROUP", value_parser = GROUPS.map(|group| group.name))]
+    #[arg(long, value_name = "GROUP", conflicts_with = "scene", value_parser = GROUPS.map(|group| group.name))]
     only: Vec<String>,
     /// Only the cases that are quick
-    #[arg(long)]
+    #[arg(long, conflicts_with = "scene")]
     quick: bool,
 }
 

@@ -19,8 +19,10 @@ pub(super) const GROUP: Group = Group {
 const COSINES: [f64; 9] = [-0.9999, -0.999, -0.9, -1e-6, 0.0, 0.5, 0.99, 0.999, 0.9999];
 
 fn cases() -> Vec<Case> {
-    let sampled =
-        COSINES.map(|g| Case::new(&GROUP, "1 - |mean cosine| of what is drawn", g, move || drawn(g)).quick());
+    let sampled = COSINES.map(|g| {
+        Case::new(&GROUP, "mean distance of the cosine from the peak's, as drawn", g, move || drawn(g))
+            .quick()
+    });
     let furnaces = COSINES.map(|g| {
         Case::new(&GROUP, "white furnace of 100 free paths", g, move || furnace(g)).quick_if(g.abs() > 0.9)
     });

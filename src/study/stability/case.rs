@@ -45,6 +45,8 @@ pub enum Loss {
     Cut,
     /// Total reflection without end.
     Trapped,
+    /// Paths on the wrong side of a surface by rounding, more than one flight in a million.
+    Astray,
 }
 
 /// What was measured.
@@ -324,7 +326,8 @@ impl Measurement {
         let c = &self.counters;
         let allows = |loss| self.losses.contains(&loss);
         // Points next to a surface may lie beyond it by their rounding: one flight in a million, as in any sound frame.
-        let rare = |count: u64| count as f64 <= ((c.rays + c.untraced) as f64 * 1e-6).max(3.0);
+        let most = ((c.rays + c.untraced) as f64 * 1e-6).max(3.0);
+        let rare = |count: u64| count as f64 <= most || allows(Loss::Astray);
         [
             ("not finite", c.non_finite, false),
             ("depth limited", c.depth_limited, allows(Loss::DepthLimited)),

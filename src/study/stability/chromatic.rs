@@ -74,7 +74,9 @@ fn alone(ratio: f64) -> Result<Measurement, StudyError> {
         let (own_mean, own_error) = own.mean();
         let lane = Measurement::new(Reference::Invariance, own_mean.x, mean[i]).of(&own);
         lanes.push(
-            lane.standard_error(error[i].hypot(own_error.x)).tolerance(1e-6).note(format!("channel {i}")),
+            lane.standard_error(libm::hypot(error[i], own_error.x))
+                .tolerance(1e-6)
+                .note(format!("channel {i}")),
         );
     }
     Ok(Measurement::worst(lanes).of(&together))

@@ -3,6 +3,9 @@
 //! A [`Group`] is about one such parameter and has a [`Case`] for each of its values; a case renders small scenes that are
 //! put together in memory ([`scene`]) and compares a number with what is known of it: a closed form, a limit, or an
 //! invariance. [`case`] judges, [`table`] and [`diagram`] show. A new group is a file here and a line in [`GROUPS`].
+//!
+//! These are the results of `floe study --stability --output FOLDER` in `stability.md`, of all cases:
+#![doc = include_str!("../stability.md")]
 
 pub mod case;
 pub mod diagram;

@@ -53,6 +53,6 @@ fn scaled(scale: f64) -> Result<Measurement, StudyError> {
     Ok(Measurement::new(Reference::Invariance, expected.x, got.x)
         .of(&one)
         .of(&other)
-        .standard_error(a.x.hypot(b.x))
+        .standard_error(libm::hypot(a.x, b.x))
         .tolerance(1e-6))
 }
