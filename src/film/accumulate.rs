@@ -215,8 +215,9 @@ impl PixelAccumulator {
             position,
             depth,
             motion: (self.motion / f64::from(self.hits.max(1))).as_vec2(),
-            variance: variance.as_vec3(),
-            luminance_variance: deviations.iter().map(|d| d * d).sum::<f64>() as f32,
+            // A square may leave the range of f32 where its root does not; infinite it would spoil every mean.
+            variance: variance.as_vec3().min(Vec3::MAX),
+            luminance_variance: (deviations.iter().map(|d| d * d).sum::<f64>() as f32).min(f32::MAX),
             deviations: deviations.map(|d| d as f32),
             samples,
             replicates: self.filled().count() as u32,

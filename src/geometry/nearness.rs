@@ -7,8 +7,20 @@
 //! over it:   n . (a x e) > 0, and so for the other edges      height^2 = (n . a)^2 / n^2
 //! to edges:  |a + s e|^2,   s = -a . e / e^2, within [0, 1]
 //! ```
+//!
+//! In single precision a sliver's normal has lost its digits, and products of six lengths leave the range of numbers among
+//! kilometres and micrometres. Such triangles are looked at again, one by one, in double precision.
 
-use super::machine::Lanes;
+use glam::DVec3;
+
+use super::machine::{Eight, Lanes};
+
+/// Squares of doubled areas, relative to the fourth power of an edge, above which a normal has its digits in single
+/// precision: those of slivers of more than ten times their width are less.
+const ROUND: f32 = 1e-2;
+/// Squares of doubled areas, in m^4, between which no product of four lengths leaves the range of single precision.
+const LEAST_AREA: f32 = 1e-20;
+const GREATEST_AREA: f32 = 1e24;
 
 type Vector<L> = [L; 3];
 
@@ -18,10 +30,54 @@ pub(crate) fn squared_distances<L: Lanes>([a, b, c]: [Vector<L>; 3]) -> L {
     let (ab, bc, ca) = (difference(b, a), difference(c, b), difference(a, c));
     let n = cross(ca, ab);
     let within = dot(n, cross(a, ab)).min(dot(n, cross(b, bc))).min(dot(n, cross(c, ca)));
-    let height = dot(n, a);
-    let squared_height = height.mul(height).div(dot(n, n));
+    let (height, area) = (dot(n, a), dot(n, n));
+    let squared_height = height.div(area).mul(height);
     let to_edges = to_segment(a, ab).min(to_segment(b, bc)).min(to_segment(c, ca));
-    L::splat(0.0).sub(within).negative(squared_height, to_edges)
+    let squares = L::splat(0.0).sub(within).negative(squared_height, to_edges);
+    let longest = dot(ab, ab).max(dot(ca, ca));
+    let plain = L::splat(ROUND).mul(longest).mul(longest).at_most(area)
+        & L::splat(LEAST_AREA).at_most(area)
+        & area.at_most(L::splat(GREATEST_AREA));
+    if plain == ALL { squares } else { with_exact(squares, !plain & ALL, [a, b, c]) }
+}
+
+/// One bit a lane.
+const ALL: u32 = 0xff;
+
+/// The squares with those of some lanes in double precision.
+#[cold]
+#[inline(never)]
+fn with_exact<L: Lanes>(squares: L, odd: u32, corners: [Vector<L>; 3]) -> L {
+    let stored = |lanes: L| {
+        let mut all = Eight([0.0; 8]);
+        lanes.store(&mut all);
+        all
+    };
+    let mut squares = stored(squares);
+    let corners = corners.map(|corner| corner.map(stored));
+    for lane in (0..8).filter(|lane| odd >> lane & 1 == 1) {
+        let seen =
+            corners.each_ref().map(|c| DVec3::from_array(c.each_ref().map(|axis| f64::from(axis.0[lane]))));
+        squares.0[lane] = exact_squared_distance(seen);
+    }
+    L::load(&squares)
+}
+
+/// Square of the distance from the origin to a triangle.
+fn exact_squared_distance(from: [DVec3; 3]) -> f32 {
+    let edges = [from[1] - from[0], from[2] - from[1], from[0] - from[2]];
+    let n = edges[0].cross(edges[1]);
+    if (0..3).all(|k| n.cross(edges[k]).dot(from[k]) < 0.0) {
+        let height = n.dot(from[0]);
+        return (height * height / n.length_squared()) as f32;
+    }
+    let to_edge = |k: usize| {
+        let s = -from[k].dot(edges[k]) / edges[k].length_squared();
+        // A segment without length gives no number, which clamps to its start.
+        let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
+        (from[k] + edges[k] * s).length_squared()
+    };
+    (0..3).map(to_edge).fold(f64::INFINITY, f64::min) as f32
 }
 
 /// To the segment from `a` along `e`.
@@ -86,6 +142,27 @@ mod tests {
             let spacing = (a - b).length().max((b - c).length()).max((c - a).length()) / 64.0;
             prop_assert!(squared.sqrt() <= sampled.sqrt() + 1e-5);
             prop_assert!(squared.sqrt() >= sampled.sqrt() - spacing - 1e-5);
+        }
+
+        /// In single precision among metres, in double among micrometres and thousands of kilometres.
+        #[test]
+        fn the_distance_grows_with_the_scene(a in vector(), b in vector(), c in vector(), p in vector(), e in -30_i32..40) {
+            let scale = 2.0_f32.powi(e);
+            let here = squared_distance(p, [a, b, c]);
+            let there = squared_distance(p * scale, [a * scale, b * scale, c * scale]);
+            // The height of a triangle with a tenth of an equal one's area is off by some units of its size.
+            let sizes = [a, b, c].map(|v| v.distance(p)).iter().sum::<f32>();
+            prop_assert!((there / (scale * scale) - here).abs() <= 1e-5 * sizes * here.sqrt() + 1e-10, "{there} {here}");
+        }
+
+        /// A sliver a micrometre wide is as far away as its plane.
+        #[test]
+        fn the_distance_over_slivers_is_the_height(x in 0.01_f32..0.99, width in 1e-7_f32..1e-3, height in 1e-4_f32..1.0) {
+            let v = [Vec3::new(0.0, x, 0.0), Vec3::new(1.0, x, 0.0), Vec3::new(1.0, x + width, 0.0)];
+            let over = (v[0] + v[1] + v[2]) / 3.0 + Vec3::Z * height;
+            let found = squared_distance(over, v).sqrt();
+            // As long as the point is over the sliver at all, in single precision; else it is a width beside it.
+            prop_assert!((found / height - 1.0).abs() < 1e-5 + (width / height).powi(2), "{found} {height}");
         }
 
         #[test]

@@ -19,6 +19,7 @@ mod led;
 mod left_out;
 pub mod path;
 pub mod photon;
+mod roulette;
 pub mod scattered;
 mod vertex;
 mod walk;

@@ -55,12 +55,23 @@ impl World {
     ///
     /// # Errors
     /// When a picture of the sky or a mesh that is the same in every frame cannot be read, or has no place here.
-    pub fn new(mut description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+    pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+        Self::of_inputs(description, placement, Inputs::default())
+    }
+
+    /// As [`World::new`]; files that are among the `inputs` are not read.
+    ///
+    /// # Errors
+    /// Those of [`World::new`].
+    pub fn of_inputs(
+        mut description: SceneDescription,
+        placement: Placement,
+        mut inputs: Inputs,
+    ) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
         let placement = *description.camera.placement.get_or_insert(placement);
         let origin = snapped(placement.eye);
         let camera = CameraPath::new(&description.camera, placement, origin);
-        let mut inputs = Inputs::default();
         let (mut media, names) = media_of(&description, mode);
         for medium in &mut media {
             let density = &description.media[&medium.name].density;
@@ -250,7 +261,14 @@ fn coefficients_of(medium: &MediumDescription, mode: LaneMode) -> [LaneCurve; 2]
         Some(given) => {
             let sigma_t = given.extinction.prepare(Role::Coefficient, mode);
             let albedo = given.albedo.prepare(Role::Reflectance, mode);
-            [sigma_t.combined(&albedo, |t, a| t * (1.0 - a)), sigma_t.combined(&albedo, |t, a| t * a)]
+            let share = |share: &LaneCurve| sigma_t.combined(share, |t, share| t * share);
+            // Over wavelength what a colour leaves of 1 is not the curve of what its numbers leave.
+            let is_upsampled = mode == LaneMode::Spectral && matches!(given.albedo, Spectrum::Rgb(_));
+            let absorbed = match is_upsampled {
+                true => albedo.combined(&albedo, |a, _| 1.0 - a),
+                false => given.absorbed.prepare(Role::Reflectance, mode),
+            };
+            [share(&absorbed), share(&albedo)]
         }
         None => [
             absorption_of(medium).prepare(Role::Coefficient, mode),

@@ -7,7 +7,9 @@
 //! * [`metrics`] says how far a picture is from a reference.
 //! * [`distributions`] has the quantiles that tests of pictures need.
 //! * [`z_test`](mod@z_test) tells a difference from noise.
+//! * [`plot`] draws results.
 //! * [`table`] writes results for people and for programs.
+//! * [`stability`] compares with what is known, where a parameter makes a scene hard.
 #![doc = include_str!("temporal.md")]
 
 pub mod compare;
@@ -15,7 +17,9 @@ pub mod distributions;
 pub mod error;
 pub mod flip;
 pub mod metrics;
+pub mod plot;
 pub mod seed_modes;
+pub mod stability;
 pub mod table;
 pub mod temporal;
 pub mod z_test;
