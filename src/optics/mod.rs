@@ -9,6 +9,7 @@
 pub mod density;
 pub mod dwivedi;
 pub mod fresnel;
+pub mod half_space;
 pub mod ice;
 pub mod medium;
 pub mod phase;

@@ -3,6 +3,7 @@
 
 mod encode;
 mod folders;
+mod half_spaces;
 mod integrators;
 mod meshes;
 mod preview;
