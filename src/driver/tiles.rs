@@ -15,7 +15,7 @@ use crate::sampling::{REPLICATES, SampleSeed, SampleStream};
 use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
 use crate::scene::frame::Frame;
-use crate::spectrum::{Wavelengths, film_rgb};
+use crate::spectrum::{Lanes, Wavelengths, film_rgb};
 
 /// How a frame's pixels are sampled.
 #[derive(Clone, Debug)]
@@ -56,6 +56,8 @@ pub trait Control: Sync {
     }
     /// Saves what is done; nothing is rendered meanwhile.
     fn save(&self, _accumulation: &Accumulation) {}
+    /// Sees the radiance of every sample, lane by lane.
+    fn sampled(&self, _radiance: Lanes) {}
 }
 
 /// Renders all pixels; `progress` hears of the tiles done and their number.
@@ -240,6 +242,7 @@ impl Work<'_> {
         };
         let eye = eye.at_time(time);
         let sample = sampling.integrator.sample(frame, scratch, &eye, &wavelengths, stream, photons);
+        self.control.sampled(sample.radiance);
         pixel.add((index % REPLICATES) as usize, &film_sample(frame, (&camera, time), &sample, &wavelengths));
     }
 }

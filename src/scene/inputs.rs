@@ -47,6 +47,13 @@ impl Inputs {
         Ok(inputs)
     }
 
+    /// A file that need not be on any disk.
+    #[must_use]
+    pub fn with(mut self, path: PathBuf, contents: Vec<u8>) -> Self {
+        self.files.push((path, contents));
+        self
+    }
+
     /// The names of those files; such as are wrong are told by [`Self::of_frame`].
     pub fn paths_of_frame(world: &World, number: FrameNumber, mesh: &Path) -> Vec<PathBuf> {
         let velocities = mesh::velocities_beside(mesh, &world.velocity_name());

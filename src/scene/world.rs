@@ -55,12 +55,23 @@ impl World {
     ///
     /// # Errors
     /// When a picture of the sky or a mesh that is the same in every frame cannot be read, or has no place here.
-    pub fn new(mut description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+    pub fn new(description: SceneDescription, placement: Placement) -> Result<Self, FrameError> {
+        Self::of_inputs(description, placement, Inputs::default())
+    }
+
+    /// As [`World::new`]; files that are among the `inputs` are not read.
+    ///
+    /// # Errors
+    /// Those of [`World::new`].
+    pub fn of_inputs(
+        mut description: SceneDescription,
+        placement: Placement,
+        mut inputs: Inputs,
+    ) -> Result<Self, FrameError> {
         let mode = lane_mode(&description);
         let placement = *description.camera.placement.get_or_insert(placement);
         let origin = snapped(placement.eye);
         let camera = CameraPath::new(&description.camera, placement, origin);
-        let mut inputs = Inputs::default();
         let (mut media, names) = media_of(&description, mode);
         for medium in &mut media {
             let density = &description.media[&medium.name].density;

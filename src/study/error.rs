@@ -1,5 +1,7 @@
 //! Why a study was not made.
 
+use std::path::PathBuf;
+
 use crate::driver::RenderError;
 use crate::sequence::FrameNumber;
 
@@ -37,5 +39,11 @@ pub enum StudyError {
         number: FrameNumber,
         /// The numbers that are there.
         available: String,
+    },
+    /// A file of results of no kind that is written.
+    #[error("{file} does not end with .csv or .json: write for example {file}.csv", file = file.display())]
+    NotATable {
+        /// As it was given.
+        file: PathBuf,
     },
 }

@@ -52,3 +52,14 @@ fn studies_that_cannot_be_made_say_why() {
     floe(&folder, &["study", "boxes"]).ended(2).says(&["--temporal"]);
     floe(&folder, &["study", "nowhere", "--temporal"]).ended(66).says(&["nowhere"]);
 }
+
+#[test]
+fn options_of_another_mode_are_refused_by_name() {
+    let folder = boxes(1, "");
+    for (more, words) in [
+        (&["--hold", "1"][..], &["--temporal"][..]),
+        (&["--temporal", "--frame", "1"], &["--frame <N>", "--temporal"]),
+    ] {
+        floe(&folder, &[&["study", "boxes"][..], more].concat()).ended(2).says(words);
+    }
+}

@@ -1,0 +1,76 @@
+//! `floe study`: one file a mode. A mode is chosen by its flag, which belongs to the group `mode`; without one it is the
+//! study of convergence.
+//!
+//! Options of one mode stand in its file, in a group that `requires` its flag; those of several stand here, and what a
+//! mode has no use for it `conflicts_with`.
+
+mod convergence;
+mod temporal;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::exit::Exit;
+use super::streams::say;
+use crate::driver::RenderError;
+use crate::film::write::write_atomically;
+use crate::sequence::FrameNumber;
+use crate::study::StudyError;
+
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    /// A scene file, or a folder with scene.toml or with frames
+    scene: PathBuf,
+    #[command(flatten)]
+    shared: Shared,
+    #[command(flatten)]
+    temporal: temporal::TemporalArguments,
+}
+
+/// What several modes take.
+#[derive(Debug, Args)]
+struct Shared {
+    /// The frame to study [default: the first]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "temporal")]
+    frame: Option<FrameNumber>,
+    /// The first seed; others follow it [default: render.seed of the scene]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Write the results here too: with --temporal a file that ends with .csv or .json
+    #[arg(long, short, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Only errors and the results
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Renders, measures and prints.
+pub fn run(arguments: &StudyArguments) -> Exit {
+    let StudyArguments { scene, shared, temporal } = arguments;
+    let result = match () {
+        () if temporal.is_asked_for() => temporal::run(scene, shared, temporal),
+        () => convergence::run(scene, shared),
+    };
+    result.unwrap_or_else(|error| {
+        say(&format!("error: {error}"));
+        match error {
+            StudyError::Render(error) => Exit::from(&error),
+            _ => Exit::Usage,
+        }
+    })
+}
+
+/// Writes results, and says why when they cannot be written.
+fn write(file: &Path, text: &str) -> Exit {
+    match write_atomically(file, text.as_bytes()) {
+        Ok(()) => Exit::Complete,
+        Err(error) => {
+            say(&format!("error: {error}"));
+            Exit::from(&RenderError::from(error))
+        }
+    }
+}
