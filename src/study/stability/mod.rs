@@ -11,6 +11,7 @@ pub mod shapes;
 pub mod table;
 
 mod extinction;
+mod half_spaces;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
 pub use picture::{Picture, render};
@@ -30,7 +31,7 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 1] = [extinction::GROUP];
+pub const GROUPS: [Group; 2] = [extinction::GROUP, half_spaces::GROUP];
 
 /// Which cases are run.
 #[derive(Clone, Debug, Default)]
