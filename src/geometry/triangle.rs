@@ -291,15 +291,45 @@ pub fn scaled_normal(v: &[Vec3; 3]) -> Vec3 {
 /// Square of the distance from a point to a triangle.
 ///
 /// Over the triangle that is the height over its plane, elsewhere the distance to the nearest edge; so it holds for
-/// triangles without area, too.
+/// triangles without area, too. The squared height times the squared normal is a product of six lengths: it would leave
+/// the range of single precision among kilometres by the thousand, and the height is taken first. What is larger or
+/// smaller still is compared in double precision.
 pub fn squared_distance(p: Vec3, v: &[Vec3; 3]) -> f32 {
     let n = scaled_normal(v);
+    let squared = n.length_squared();
+    if !(LEAST_SQUARED_NORMAL..=GREATEST_SQUARED_NORMAL).contains(&squared) {
+        return squared_distance_in_double_precision(p, v);
+    }
     let edges = [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])];
     if edges.iter().all(|(a, b)| n.cross(b - a).dot(p - a) > 0.0) {
-        let height = n.dot(p - v[0]);
-        return height * height / n.length_squared();
+        let height = n.dot(p - v[0]) / squared.sqrt();
+        return height * height;
     }
     edges.iter().map(|&(a, b)| squared_distance_to_segment(p, a, b)).fold(f32::INFINITY, f32::min)
+}
+
+/// Squares of normals, products of four lengths, from which on heights keep their digits.
+const LEAST_SQUARED_NORMAL: f32 = 1e-30;
+/// Those up to which no product of them with another length overflows.
+const GREATEST_SQUARED_NORMAL: f32 = 1e36;
+
+#[cold]
+fn squared_distance_in_double_precision(p: Vec3, v: &[Vec3; 3]) -> f32 {
+    let (p, v) = (p.as_dvec3(), v.map(|v| v.as_dvec3()));
+    let n = (v[1] - v[0]).cross(v[2] - v[0]);
+    let edges = [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])];
+    if edges.iter().all(|(a, b)| n.cross(b - a).dot(p - a) > 0.0) {
+        let height = n.dot(p - v[0]) / n.length();
+        return (height * height) as f32;
+    }
+    let to_edge = |&(a, b): &(DVec3, DVec3)| {
+        let along = b - a;
+        let s = (p - a).dot(along) / along.length_squared();
+        // A segment without length gives no number, which clamps to its start.
+        let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
+        (p - (a + along * s)).length_squared()
+    };
+    edges.iter().map(to_edge).fold(f64::INFINITY, f64::min) as f32
 }
 
 fn squared_distance_to_segment(p: Vec3, a: Vec3, b: Vec3) -> f32 {
@@ -402,16 +432,20 @@ mod tests {
         }
 
         #[test]
-        fn the_distance_is_that_of_the_nearest_point(a in vector(), b in vector(), c in vector(), p in vector()) {
-            let squared = squared_distance(p * 2.0, &[a, b, c]);
+        fn the_distance_is_that_of_the_nearest_point(
+            a in vector(), b in vector(), c in vector(), p in vector(), power in -12_i32..=12
+        ) {
+            let scale = 10.0_f32.powi(power);
+            let squared = squared_distance(p * 2.0 * scale, &[a * scale, b * scale, c * scale]);
+            let distance = squared.sqrt() / scale;
             let points = (0..=64).flat_map(|i| (0..=64 - i).map(move |j| (i as f32 / 64.0, j as f32 / 64.0)));
             let sampled = points
                 .map(|(s, t)| (a * s + b * t + c * (1.0 - s - t)).distance_squared(p * 2.0))
                 .fold(f32::INFINITY, f32::min);
             // The nearest point is within the spacing of the samples.
             let spacing = (a - b).length().max((b - c).length()).max((c - a).length()) / 64.0;
-            prop_assert!(squared.sqrt() <= sampled.sqrt() + 1e-5);
-            prop_assert!(squared.sqrt() >= sampled.sqrt() - spacing - 1e-5);
+            prop_assert!(distance <= sampled.sqrt() + 1e-5);
+            prop_assert!(distance >= sampled.sqrt() - spacing - 1e-5);
         }
 
         #[test]

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
+use floe::study::stability::h_function::HFunction;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
 use super::half_space::{COSINES, SLAB, camera, slab, sun};
 use super::thick_media::assert_same_mean;
 use super::walls::sky_picture;
-use crate::common::h_function::HFunction;
 use crate::common::mesh::sphere;
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;

@@ -3,11 +3,11 @@
 //! `cargo test --release --test analytic reflected_measured -- --ignored --nocapture --test-threads 1`
 
 use floe::driver::tiles::{Sampling, render_pixels};
+use floe::study::stability::h_function::HFunction;
 use glam::DVec3;
 
 use super::half_space::{COSINES, SLAB, camera, slab};
 use super::walls::sky_picture;
-use crate::common::h_function::HFunction;
 use crate::common::mesh::sphere;
 use crate::common::render::Rendered;
 use crate::common::scene::SceneFolder;

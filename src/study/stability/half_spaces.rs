@@ -30,7 +30,7 @@ const COSINES: [f64; 2] = [0.6, 0.8];
 fn cases() -> Vec<Case> {
     let sizes = [LEAST, 1e6, 1e7, 1e8, 1e9];
     let each = |name: &'static str, measure: fn(f64) -> Result<Measurement, StudyError>| {
-        sizes.map(|size| Case::new(GROUP.name, name, size, move || measure(size)).quick())
+        sizes.map(|size| Case::new(&GROUP, name, size, move || measure(size)).quick())
     };
     let furnaces = each("white furnace of a cube of index 1.33, albedo 1", furnace);
     let even = each("albedo 0.9 under an even sky", under_even_sky);

@@ -2,16 +2,28 @@
 //!
 //! A [`Group`] is about one such parameter and has a [`Case`] for each of its values; a case renders small scenes that are
 //! put together in memory ([`scene`]) and compares a number with what is known of it: a closed form, a limit, or an
-//! invariance. [`case`] judges. A new group is a file here and a line in [`GROUPS`].
+//! invariance. [`case`] judges, [`table`] and [`diagram`] show. A new group is a file here and a line in [`GROUPS`].
 
 pub mod case;
+pub mod diagram;
+pub mod h_function;
 pub mod picture;
+pub mod pieces;
 pub mod scene;
 pub mod shapes;
 pub mod table;
 
+mod albedo;
+mod asymmetry;
+mod chromatic;
 mod extinction;
+mod grazing;
 mod half_spaces;
+mod index;
+mod limits;
+mod radiance;
+mod scale;
+mod sun;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
 pub use picture::{Picture, render};
@@ -31,7 +43,21 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 2] = [extinction::GROUP, half_spaces::GROUP];
+pub const GROUPS: [Group; 13] = [
+    extinction::GROUP,
+    half_spaces::GROUP,
+    albedo::GROUP,
+    asymmetry::GROUP,
+    index::GROUP,
+    grazing::GROUP,
+    sun::GROUP,
+    radiance::GROUP,
+    chromatic::GROUP,
+    limits::DEPTH,
+    limits::SAMPLES,
+    limits::RESOLUTION,
+    scale::GROUP,
+];
 
 /// Which cases are run.
 #[derive(Clone, Debug, Default)]

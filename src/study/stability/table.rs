@@ -119,7 +119,7 @@ pub fn name(outcome: Outcome) -> &'static str {
 }
 
 /// A parameter, short.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
         format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
