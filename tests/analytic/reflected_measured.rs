@@ -32,7 +32,7 @@ fn medium(n: f64, g: f64, sigma: f64, albedos: [f64; 3]) -> String {
 /// Walks in slabs of 200 reduced free paths, from which light comes back as exp(-2 kappa 200), 3e-10 for an albedo of 0.999,
 /// and the half spaces that are similar to them.
 #[test]
-#[ignore = "ten minutes"]
+#[ignore = "half an hour"]
 fn what_half_spaces_are_off_by() {
     // Light from within some 20 degrees of a direction 53 degrees from the normal, at 127 degrees from the eye's azimuth.
     let towards = DVec3::new(-0.6 * 0.8, 0.8 * 0.8, 0.6);
