@@ -20,6 +20,9 @@ mod analytic {
     mod led_walks;
     mod limits;
     mod media;
+    mod reflected;
+    mod reflected_measured;
+    mod reflected_where;
     mod single_scattering;
     mod spectral;
     mod sunlight;

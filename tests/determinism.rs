@@ -305,3 +305,18 @@ fn z(a: &Rendered, b: &Rendered) -> f64 {
     let variance: f64 = pixels().map(|(a, b)| f64::from(a.luminance_variance + b.luminance_variance)).sum();
     difference.abs() / variance.sqrt()
 }
+
+/// Ice that is too thick to walk through, under the sun: the table of its H-function is made by whichever thread is first.
+#[test]
+fn half_spaces_change_no_byte_either() {
+    let text = shipped_scene(4).replace("scattering = 7 ", "scattering = 1e6 ");
+    let folder = wobbling_in(&format!("{text}[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n"));
+    let (sequence, refitted) = pictures(&folder, "0-2", 2);
+    assert_eq!((sequence.len(), refitted), (6, vec![false, true, true]));
+    assert_eq!(pictures(&folder, "0-2", 1).0, sequence, "one thread");
+    assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
+    let words = b"reflected as by a half space";
+    folder.render(RenderOptions::default());
+    let ledger = folder.read("out/ledger.jsonl");
+    assert!(ledger.windows(words.len()).any(|bytes| bytes == words), "the ice is no half space");
+}

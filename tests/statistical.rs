@@ -9,6 +9,7 @@
 mod common;
 
 mod statistical {
+    mod half_spaces;
     mod lights;
     mod phase_functions;
     mod phase_limits;
@@ -20,4 +21,4 @@ mod statistical {
 const SIGNIFICANCE: f64 = 1e-4;
 
 /// Upper bound on the number of chi-square tests.
-const TESTS: f64 = 80.0;
+const TESTS: f64 = 100.0;

@@ -179,7 +179,9 @@ fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) 
     for line in integrator.lines(&frame.needs) {
         let _ = writeln!(text, "  {line}");
     }
-    let left_out = integrator.left_out(&frame.needs);
+    let reflected = assembled.reflected.iter().map(ToString::to_string);
+    let left_out = integrator.left_out(&frame.needs).into_iter().map(Into::into).chain(reflected);
+    let left_out: Vec<String> = left_out.collect();
     if !left_out.is_empty() {
         let _ = writeln!(text, "  left out: {}", left_out.join(", "));
     }

@@ -328,4 +328,5 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     record.left_out.extend(assembled.reduced.iter().map(|reduced| {
         format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
     }));
+    record.left_out.extend(assembled.reflected.iter().map(ToString::to_string));
 }

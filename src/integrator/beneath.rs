@@ -63,7 +63,7 @@ impl<'a> Sample<'a> {
         let Some(Seen { hit, pair: Some(pair), beyond: insides }) = seen else { return Lanes::ZERO };
         let (incident, beyond) = pair.crossed(hit.from_front);
         // From the wrong side rounding has met it.
-        if pair.matched || incident != receiver.medium {
+        if pair.matched || incident != receiver.medium || frame.reflects_beyond(&pair, hit.from_front) {
             return Lanes::ZERO;
         }
         let point = frame.geometry.surface_hit(&hit, ray.direction, self.time);

@@ -125,7 +125,7 @@ impl Sample<'_> {
         frame.accel.each_hit(ray, ignored, |hit| {
             // Whether a layer is in the way is told when all are known.
             blocked = !match frame.surface(hit.triangle) {
-                Surface::Interface(pair) => pair.matched,
+                Surface::Interface(pair) => pair.matched && !frame.reflects_beyond(pair, hit.from_front),
                 Surface::Layer(_) => true,
                 _ => false,
             };

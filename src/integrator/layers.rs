@@ -215,7 +215,9 @@ impl Sample<'_> {
         let mut travelled = 0.0;
         let mut way = Way::new(self, ray, insides);
         while let Some(Seen { hit, pair, .. }) = way.next() {
-            let Some(pair) = pair.filter(|pair| pair.matched) else { return Lanes::ZERO };
+            let is_open =
+                |pair: &MediumPair| pair.matched && !self.frame.reflects_beyond(pair, hit.from_front);
+            let Some(pair) = pair.filter(is_open) else { return Lanes::ZERO };
             let beyond = pair.crossed(hit.from_front).1;
             left *= self.transmittance_of(medium, ray, travelled, hit.t) * self.index_factor(medium, beyond);
             (medium, travelled) = (beyond, hit.t);

@@ -13,6 +13,7 @@ mod diffuse;
 mod direct;
 mod flight;
 mod forced;
+mod half_space;
 mod interface;
 mod layers;
 mod led;

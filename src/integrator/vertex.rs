@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::diffuse::DiffuseLobe;
 use super::direct::Receiver;
+use super::half_space::Cover;
 use super::interface;
 use super::path::{Arrival, Branch, Fate, LitVertex, Looked, Sample};
 use super::photon::{self, Guide, PhotonPass};
@@ -66,10 +67,20 @@ impl Sample<'_> {
         if !matches!(branch.arrival.looked, Looked::Straight(_)) {
             branch.arrival.looked = Looked::Not;
         }
-        branch.enter(beyond, self.index_factor(incident, beyond));
+        let index_factor = self.index_factor(incident, beyond);
+        branch.enter(beyond, index_factor);
         branch.go_on(hit, branch.direction);
         self.scratch.around.outward = hit.ng;
-        Fate::GoesOn
+        match self.half_space(beyond) {
+            None => Fate::GoesOn,
+            Some(half_space) => {
+                let media = (incident, beyond);
+                let cover = Cover { media, normal: hit.ns, ng: hit.ng, eta: 1.0, gain: 1.0 / index_factor };
+                let mu = -branch.direction.dot(hit.ns);
+                self.remember_first(branch, hit, half_space.along(mu).reflectance);
+                self.turn_back(branch, hit, &cover, &half_space, mu)
+            }
+        }
     }
 
     /// A refracting interface: both ways while splits are left, one by Fresnel's reflectance afterwards.
@@ -108,7 +119,16 @@ impl Sample<'_> {
             branch.split_off(1.0 - ways.reflectance, 1);
         }
         self.scratch.around.outward = hit.ng;
-        branch.interacted(u[3])
+        let fate = branch.interacted(u[3]);
+        match self.half_space(beyond).filter(|_| fate == Fate::GoesOn) {
+            None => fate,
+            Some(half_space) => {
+                let normal = if ways.shaded { hit.ns } else { hit.ng };
+                let (media, eta) = ((incident, beyond), eta_t_over_i);
+                let cover = Cover { media, normal, ng: hit.ng, eta, gain: 1.0 };
+                self.turn_back(branch, hit, &cover, &half_space, -direction.dot(normal))
+            }
+        }
     }
 
     fn reflect_diffusely<const DIRECT: bool>(

@@ -9,6 +9,7 @@
 pub mod density;
 pub mod dwivedi;
 pub mod fresnel;
+pub mod half_space;
 pub mod ice;
 pub mod lorenz_mie;
 pub mod medium;

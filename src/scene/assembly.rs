@@ -6,21 +6,25 @@ use std::path::{Path, PathBuf};
 
 use super::beneath::Asked;
 use super::camera_path::Views;
+use super::description::IntegratorKind;
 use super::domain::{self, DomainOutcome, WallTag};
 use super::error::FrameError;
 use super::frame::{Frame, place_of};
 use super::geometry::Geometry;
+use super::half_spaces::{self, Reflected};
 use super::inputs::Inputs;
 use super::layers::Layers;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
-use super::surface::{Surface, SurfaceId};
+use super::surface::{MediumPair, Surface, SurfaceId};
 use super::thick::{self, Reduced};
 use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
+use crate::geometry::Bounds;
 use crate::light::area::EmitterTriangle;
 use crate::light::{AreaLights, Lights};
 use crate::mesh::{self, Interface, RawMesh, Region, normals};
+use crate::optics::half_space::HalfSpace;
 use crate::optics::medium::{Medium, MediumId};
 use crate::sequence::FrameNumber;
 use crate::spectrum::{Role, Spectrum, Wavelengths};
@@ -39,6 +43,8 @@ pub struct Assembled {
     pub update: Update,
     /// Media whose scattering was replaced.
     pub reduced: Vec<Reduced>,
+    /// Media of which nothing but a half space is seen.
+    pub reflected: Vec<Reflected>,
     /// What the user should look at.
     pub warnings: Vec<String>,
 }
@@ -254,8 +260,6 @@ impl<'a> Assembly<'a> {
         let world = self.world;
         let shutter = world.description.camera.shutter;
         self.parts.geometry.settle_motions();
-        let reduced = self.reduce(&mut media);
-        let led = self.led(&media);
         let lights = Lights {
             environment: world.environment.clone(),
             sun: world.sun.clone(),
@@ -272,7 +276,11 @@ impl<'a> Assembly<'a> {
         let place_of = |point, time| place_of(point, time, &accel, surface, &layers);
         let camera = place_of(views.opening.eye(), 0.0);
         let starts = views.start_places(camera, accel.is_in_motion(), place_of);
-        let lit = self.lit(|point| place_of(point, 0.0).medium);
+        let medium_at = |point| place_of(point, 0.0).medium;
+        let lit = self.lit(medium_at);
+        let (half_spaces, reflected) = self.half_spaces(&media, medium_at);
+        let reduced = self.reduce(&mut media);
+        let led = self.led(&media);
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -284,8 +292,17 @@ impl<'a> Assembly<'a> {
         let beneath = asked.beneath();
         let looked_from: Vec<bool> = lit.iter().zip(&beneath).map(|(lit, b)| *lit || b.is_some()).collect();
         let needs = self.needs(&media, &lights, &looked_from, camera.medium);
+        let is_half_space = |id: MediumId| half_spaces.get(id.0 as usize).is_some_and(Option::is_some);
+        let lets_sun_in = |p: &MediumPair| {
+            !p.matched
+                && (p.front == camera.medium || !is_half_space(p.front))
+                && (p.back == camera.medium || !is_half_space(p.back))
+        };
         let needs = Needs {
             similarity: !reduced.is_empty(),
+            half_spaces: !half_spaces.is_empty(),
+            direct_light: needs.direct_light || (lights.are_sampled() && !half_spaces.is_empty()),
+            sun_behind_interface: needs.sun_behind_interface && self.parts.pairs.keys().any(lets_sun_in),
             layers: !layers.is_empty(),
             // Layers may be hidden, which rays pass straight through.
             matched_interfaces: needs.matched_interfaces || !layers.is_empty(),
@@ -304,6 +321,7 @@ impl<'a> Assembly<'a> {
                 lit,
                 beneath,
                 led,
+                half_spaces,
                 geometry: self.parts.geometry,
                 surfaces: self.parts.surfaces,
                 layers,
@@ -316,6 +334,7 @@ impl<'a> Assembly<'a> {
             labelled: self.labelled,
             update,
             reduced,
+            reflected,
             warnings: self.parts.warnings,
         }
     }
@@ -325,6 +344,25 @@ impl<'a> Assembly<'a> {
         let order = self.world.description.render.similarity;
         let extent = |id| thick::least_extent(id, geometry, surfaces);
         thick::reduce(media, &self.world.reductions, order, &self.endless, extent)
+    }
+
+    /// Those of path tracing: photons walk, and other integrators want less than all scattered light.
+    fn half_spaces(
+        &self,
+        media: &[Medium],
+        medium_at: impl Fn(Vec3) -> MediumId,
+    ) -> (Vec<Option<HalfSpace>>, Vec<Reflected>) {
+        let integrator = self.world.description.render.integrator;
+        if !matches!(integrator, IntegratorKind::Auto | IntegratorKind::Path) {
+            return Default::default();
+        }
+        let Parts { geometry, surfaces, .. } = &self.parts;
+        let holds_light = |id, bounds: &Bounds| {
+            let near = |triangle: &u32| bounds.meets(&Bounds::of_points(geometry.vertices(*triangle)));
+            let near: Vec<u32> = self.emitting().filter(near).take(MOST_ASKED + 1).collect();
+            near.len() > MOST_ASKED || near.into_iter().any(|triangle| medium_at(self.before(triangle)) == id)
+        };
+        half_spaces::half_spaces(media, |id| thick::bounds_of(id, geometry, surfaces), holds_light)
     }
 
     fn led(&self, media: &[Medium]) -> Vec<bool> {
@@ -377,26 +415,35 @@ impl<'a> Assembly<'a> {
             peaked_sky: lights.environment.is_peaked(),
             layers: false,
             similarity: false,
+            half_spaces: false,
             motion: false,
             lens: false,
             sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }
 
+    /// The triangles that emit.
+    fn emitting(&self) -> impl Iterator<Item = u32> {
+        let Parts { geometry, emitters, .. } = &self.parts;
+        let emits = |id: &u32| emitters.iter().any(|(e, _)| *e == geometry.surfaces[*id as usize]);
+        (0..geometry.triangles.len() as u32).filter(emits)
+    }
+
+    /// A point close before the middle of a triangle.
+    fn before(&self, triangle: u32) -> Vec3 {
+        let [a, b, c] = self.parts.geometry.vertices(triangle);
+        (a + b + c) / 3.0 + 1e-4 * (b - a).cross(c - a).normalize_or_zero() * (b - a).length()
+    }
+
     /// Media that are joined to the outside, or to one that a triangle emits into, by index-matched boundaries.
     ///
     /// A light that is looked for where it cannot be seen costs shadow rays, and one that is not is still met by chance.
     fn lit(&self, medium_at: impl Fn(Vec3) -> MediumId) -> Vec<bool> {
-        let geometry = &self.parts.geometry;
-        let emits = |id: &u32| self.parts.emitters.iter().any(|(e, _)| *e == geometry.surfaces[*id as usize]);
-        let emitting: Vec<u32> =
-            (0..geometry.triangles.len() as u32).filter(emits).take(MOST_ASKED + 1).collect();
+        let emitting: Vec<u32> = self.emitting().take(MOST_ASKED + 1).collect();
         let mut lit = vec![emitting.len() > MOST_ASKED; self.world.media.len()];
         lit[0] = true;
         for id in emitting.into_iter().take(MOST_ASKED) {
-            let [a, b, c] = geometry.vertices(id);
-            let before = 1e-4 * (b - a).cross(c - a).normalize_or_zero() * (b - a).length();
-            lit[medium_at((a + b + c) / 3.0 + before).0 as usize] = true;
+            lit[medium_at(self.before(id)).0 as usize] = true;
         }
         loop {
             let before = lit.clone();

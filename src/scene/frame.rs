@@ -8,6 +8,7 @@ use super::surface::{MediumPair, Surface};
 use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::light::{Beneath, Lights};
+use crate::optics::half_space::HalfSpace;
 use crate::optics::medium::{Medium, MediumId};
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths, film_rgb};
 use glam::{DVec3, Vec3};
@@ -34,6 +35,8 @@ pub struct Frame {
     pub beneath: Vec<Option<Beneath>>,
     /// Media whose walks are led to their surface ([`crate::optics::dwivedi`]), by [`MediumId`].
     pub led: Vec<bool>,
+    /// What is seen of media that are too thick to walk through ([`super::half_spaces`]), by [`MediumId`]; empty without any.
+    pub half_spaces: Vec<Option<HalfSpace>>,
     /// All triangles.
     pub geometry: Geometry,
     /// What triangles are, by [`super::surface::SurfaceId`].
@@ -55,6 +58,18 @@ impl Frame {
     #[inline]
     pub fn medium(&self, id: MediumId) -> &Medium {
         &self.media[id.0 as usize]
+    }
+
+    /// What is seen of a medium that is too thick to walk through.
+    #[inline]
+    pub fn half_space(&self, id: MediumId) -> Option<&HalfSpace> {
+        self.half_spaces.get(id.0 as usize)?.as_ref()
+    }
+
+    /// True when a ray does not get into the medium beyond a boundary, which reflects it as a half space does.
+    #[inline]
+    pub fn reflects_beyond(&self, pair: &MediumPair, from_front: bool) -> bool {
+        !self.half_spaces.is_empty() && self.half_space(pair.crossed(from_front).1).is_some()
     }
 
     /// What lanes of reflected white light look like, linear RGB.

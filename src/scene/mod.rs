@@ -14,6 +14,7 @@ pub mod domain;
 pub mod error;
 pub mod frame;
 pub mod geometry;
+pub mod half_spaces;
 pub mod inputs;
 pub mod layers;
 mod motion;

@@ -35,6 +35,8 @@ pub struct Needs {
     pub peaked_sky: bool,
     /// Scattering in thick media was replaced by what is similar from afar: the picture is biased.
     pub similarity: bool,
+    /// A medium is too thick to walk through and is seen as a half space: the picture is biased.
+    pub half_spaces: bool,
     /// Something moves while the shutter is open.
     pub motion: bool,
     /// The camera has a lens: what is not in focus is blurred.
@@ -49,8 +51,7 @@ impl Needs {
 
     /// A line for each part: what is used or left out, and why.
     pub fn lines(&self) -> Vec<NeedLine> {
-        let line = |part, used, because| NeedLine { part, used, because };
-        vec![
+        let mut lines = vec![
             line(
                 "spectral lanes",
                 self.spectral,
@@ -112,15 +113,6 @@ impl Needs {
                 },
             ),
             line(
-                "similarity reduction (biased)",
-                self.similarity,
-                if self.similarity {
-                    "render.similarity is set and a medium is thick: it scatters less often and wider than it says"
-                } else {
-                    "render.similarity is 0, or no medium is thick and scatters forward"
-                },
-            ),
-            line(
                 "motion blur",
                 self.motion,
                 if self.motion {
@@ -143,8 +135,37 @@ impl Needs {
                     "no sun shines on a refracting interface"
                 },
             ),
+        ];
+        lines.extend(self.biased_lines());
+        lines
+    }
+
+    fn biased_lines(&self) -> [NeedLine; 2] {
+        [
+            line(
+                "similarity reduction (biased)",
+                self.similarity,
+                if self.similarity {
+                    "render.similarity is set and a medium is thick: it scatters less often and wider than it says"
+                } else {
+                    "render.similarity is 0, or no medium is thick and scatters forward"
+                },
+            ),
+            line(
+                "half-space reflection (biased)",
+                self.half_spaces,
+                if self.half_spaces {
+                    "a medium is too thick to walk through: light leaves it where it came in"
+                } else {
+                    "no medium has an optical size above 100,000, or it is walked through all the same"
+                },
+            ),
         ]
     }
+}
+
+fn line(part: &'static str, used: bool, because: &'static str) -> NeedLine {
+    NeedLine { part, used, because }
 }
 
 /// One line of the report.

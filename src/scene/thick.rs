@@ -92,10 +92,15 @@ fn is_thick(medium: &Medium, is_endless: bool, extent: impl Fn() -> f32) -> bool
 
 /// The least edge of the box around the interfaces of a medium in metres; 0 without any.
 pub(super) fn least_extent(id: MediumId, geometry: &Geometry, surfaces: &[Surface]) -> f32 {
+    bounds_of(id, geometry, surfaces).size().min_element()
+}
+
+/// The box around the interfaces of a medium.
+pub(super) fn bounds_of(id: MediumId, geometry: &Geometry, surfaces: &[Surface]) -> Bounds {
     let is_of = |pair: &MediumPair| pair.front == id || pair.back == id;
     let own: Vec<bool> = surfaces.iter().map(|s| s.pair().is_some_and(is_of)).collect();
     let corners = (0..geometry.triangles.len() as u32)
         .filter(|&triangle| own[geometry.surfaces[triangle as usize].0 as usize])
         .flat_map(|triangle| geometry.vertices(triangle));
-    Bounds::of_points(corners).size().min_element()
+    Bounds::of_points(corners)
 }

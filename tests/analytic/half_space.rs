@@ -11,14 +11,14 @@ use crate::common::mesh::{TestMesh, parallelogram, sphere};
 use crate::common::scene::SceneFolder;
 
 /// Cosines with the normal under which a half space is lit and seen.
-const COSINES: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
+pub const COSINES: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
 /// The lanes of one picture.
 const ALBEDOS: [f64; 3] = [0.5, 0.9, 0.99];
 const TURBID: &str = "[media.cloud]\nextinction = 1\nalbedo = [0.5, 0.9, 0.99]\n";
 
 /// A slab between z = -depth and 0, without sides. Triangles are as large as their distance from the middle: what a ray
 /// meets on a large one is off by the rounding of its far corners, and paths are near the middle.
-fn slab(depth: f64, breadth: f64) -> SceneFolder {
+pub fn slab(depth: f64, breadth: f64) -> SceneFolder {
     let steps = [-1.0, -0.1, -0.01, 0.01, 0.1, 1.0].map(|x| x * breadth);
     let mut slab = TestMesh::default();
     for (z, up) in [(0.0, true), (-depth, false)] {
@@ -35,7 +35,7 @@ fn slab(depth: f64, breadth: f64) -> SceneFolder {
     SceneFolder::new().mesh("slab.ply", &slab)
 }
 
-const SLAB: &str = "[[surfaces]]\nmesh = \"slab.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"cloud\"\n\
+pub const SLAB: &str = "[[surfaces]]\nmesh = \"slab.ply\"\nnormals = \"flat\"\nfront = \"air\"\nback = \"cloud\"\n\
                     material = { kind = \"null\" }\n";
 
 /// A view of the point at this height whose rays are all parallel to 1e-6.
@@ -46,12 +46,12 @@ fn view(eye: [f64; 3], z: f64) -> String {
 }
 
 /// A view of the origin along this cosine with z.
-fn camera(mu: f64) -> String {
+pub fn camera(mu: f64) -> String {
     view([9.0 * (1.0 - mu * mu).sqrt(), 0.0, 9.0 * mu], 0.0)
 }
 
 /// A narrow sun at another azimuth that makes an irradiance of pi on a plane that faces it.
-fn sun(mu: f64) -> String {
+pub fn sun(mu: f64) -> String {
     let sine = (1.0 - mu * mu).sqrt();
     let direction = [-0.6 * sine, 0.8 * sine, mu];
     format!("[sun]\ndirection = {direction:?}\nangular_diameter = 0.01\nirradiance = {PI}\n")

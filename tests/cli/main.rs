@@ -4,6 +4,7 @@
 mod compare;
 mod encode;
 mod folders;
+mod half_spaces;
 mod integrators;
 mod meshes;
 mod optics;

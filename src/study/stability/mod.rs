@@ -21,6 +21,7 @@ mod asymmetry;
 mod chromatic;
 mod extinction;
 mod grazing;
+mod half_spaces;
 mod index;
 mod limits;
 mod radiance;
@@ -45,8 +46,9 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 12] = [
+pub const GROUPS: [Group; 13] = [
     extinction::GROUP,
+    half_spaces::GROUP,
     albedo::GROUP,
     asymmetry::GROUP,
     index::GROUP,
