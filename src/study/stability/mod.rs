@@ -10,7 +10,14 @@ pub mod scene;
 pub mod shapes;
 pub mod table;
 
+mod bodies;
+mod contacts;
 mod extinction;
+mod frames;
+mod labels;
+mod offsets;
+mod scale;
+mod slivers;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
 pub use picture::{Picture, render};
@@ -30,7 +37,15 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 1] = [extinction::GROUP];
+pub const GROUPS: [Group; 7] = [
+    extinction::GROUP,
+    scale::GROUP,
+    offsets::GROUP,
+    slivers::GROUP,
+    contacts::GROUP,
+    labels::GROUP,
+    frames::GROUP,
+];
 
 /// Which cases are run.
 #[derive(Clone, Debug, Default)]
