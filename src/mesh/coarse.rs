@@ -4,10 +4,9 @@
 //! ```text
 //! step = 2^(e - 23)
 //! ```
-//! whatever its file holds: binary floats, their digits as text, or doubles that were floats once. A mesh has lost its
-//! detail where half of its edges are shorter than 100 steps: directions of faces are then off by up to half a degree. A mesh
-//! around zero would need 80,000 edges in a row for that; so it is the mark of one that stands far from it, as in
-//! coordinates of a survey.
+//! whether its file holds it as such or as a double that was one once. A mesh has lost its detail where half of its edges
+//! are shorter than 100 steps: directions of faces are then off by up to half a degree. A mesh around zero would need
+//! 80,000 edges in a row for that; so it is the mark of one that stands far from it, as in coordinates of a survey.
 
 use std::fmt;
 
@@ -41,9 +40,10 @@ impl fmt::Display for Coarse {
         let Self { far, step, edge } = self;
         write!(
             f,
-            "the detail of the mesh is lost: its coordinates, up to {far:.8} from zero, are numbers of single precision, \
-             which lie {step} apart there, and its median edge is {edge:.3} long; write double precision, or \
-             subtract an origin before writing"
+            "the detail of the mesh is lost: its coordinates, up to {far} from zero, are numbers of single precision, \
+             which lie {step} apart there, and its median edge is {} long; write double precision, or \
+             subtract an origin before writing",
+            *edge as f32
         )
     }
 }

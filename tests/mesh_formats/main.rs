@@ -110,19 +110,21 @@ fn every_format_is_its_ply_twin() {
     }
 }
 
-/// In single precision numbers lie a quarter apart at 4,000,000; text of their digits has no more.
+/// In single precision numbers lie a quarter apart at 4,000,000. Of text nobody can say how its numbers were made.
 #[test]
-fn every_format_tells_of_lost_detail() {
+fn every_binary_format_tells_of_lost_detail() {
     let here = Sample::blob();
     let mut far = here.clone();
     far.positions.iter_mut().for_each(|position| position[1] += 4e6);
     for (sample, expected) in [(here, false), (far, true)] {
         for Example { name, syntax, bytes } in vtk_examples(&sample).into_iter().chain(bare_examples(&sample))
         {
+            let is_text =
+                ["binary: false", "encoding: Ascii", "STL text"].iter().any(|text| name.contains(text));
             let mesh = read(&bytes, syntax).unwrap();
             let (_, warnings) = prepare(mesh, Region(1), Path::new("example")).unwrap();
             let told = warnings.iter().find(|warning| matches!(warning, MeshWarning::Coarse(_)));
-            assert_eq!(told.is_some(), expected, "{name}: {warnings:?}");
+            assert_eq!(told.is_some(), expected && !is_text, "{name}: {warnings:?}");
         }
     }
 }
