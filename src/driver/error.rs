@@ -108,7 +108,8 @@ pub enum RenderError {
     /// Labels disagree so often that the picture would be wrong.
     #[error(
         "{path}: at {mismatches} of {rays} rays the surface belongs to another medium than the one the ray was in; \
-         the mesh is open, overlaps itself, or its labels are wrong (a warning for this frame, if there is one, names the place); no picture is written"
+         the mesh is open, overlaps itself, or its labels are wrong (a warning for this frame, if there is one, names the place); \
+         closed meshes that touch or overlap may each be a file of [[meshes]]; no picture is written"
     )]
     Mismatches {
         /// The frame's file.

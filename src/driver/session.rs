@@ -211,7 +211,7 @@ impl<'a> Session<'a> {
             // What is inside follows from the closed surface alone; where that crosses itself there is no right answer.
             let text = format!(
                 "{}: at {mismatches} of {rays} rays the surface, which carries no labels, overlaps itself or is open: \
-                 refraction is wrong there",
+                 refraction is wrong there; closed meshes that touch or overlap may each be a file of [[meshes]]",
                 path.display()
             );
             self.observer.warning(&text);

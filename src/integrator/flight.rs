@@ -28,11 +28,13 @@ pub(super) struct Clearing {
     /// Collisions since the last surface or ball, and how many there must be before the next is looked for.
     collisions: u32,
     patience: u32,
+    /// The greatest radius so far over the width of all there is, 1 at least.
+    widths: f32,
 }
 
 impl Clearing {
     pub(super) const NONE: Self =
-        Self { centre: Vec3::ZERO, radius: -1.0, collisions: 0, patience: Self::FIRST_PATIENCE };
+        Self { centre: Vec3::ZERO, radius: -1.0, collisions: 0, patience: Self::FIRST_PATIENCE, widths: 1.0 };
     /// Paths that collide a few times only are not worth the search.
     const FIRST_PATIENCE: u32 = 4;
     /// A ball of fewer mean free paths is soon left: the next is looked for later.
@@ -65,19 +67,24 @@ impl Clearing {
         self.radius > 0.0
     }
 
-    /// The path has collided at a point outside of the ball.
+    /// The path has collided at a point outside of the ball. Tells the probability with which it should go on: less than 1
+    /// where it is farther than before from all there is, measured by how wide that is, in a medium without end.
     #[inline]
-    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) {
+    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) -> f32 {
         self.radius = -1.0;
         self.collisions += 1;
-        if self.collisions >= self.patience {
-            self.centre = point;
-            self.radius = accel.clearance(point, time) - rounding(point, 0.0);
-            self.collisions = 0;
-            let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
-            // Who has left a large ball is deep in the medium still.
-            self.patience = if is_large { 1 } else { 2 * self.patience };
+        if self.collisions < self.patience {
+            return 1.0;
         }
+        self.centre = point;
+        self.radius = accel.clearance(point, time) - rounding(point, 0.0);
+        self.collisions = 0;
+        let is_large = self.radius * sigma_t >= Self::WORTH_A_SEARCH;
+        // Who has left a large ball is deep in the medium still.
+        self.patience = if is_large { 1 } else { 2 * self.patience };
+        let widths =
+            if accel.is_empty() { f32::INFINITY } else { self.radius / accel.bounds().size().length() };
+        if widths > self.widths { std::mem::replace(&mut self.widths, widths) / widths } else { 1.0 }
     }
 }
 
@@ -147,7 +154,9 @@ impl Sample<'_> {
             let point = endless.at(to_particle);
             if !VARIED {
                 let clearing = &mut self.scratch.around.clearing;
-                clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
+                let sigma_t = medium.sigma_t.max_element();
+                let survival = clearing.traced_to(point, sigma_t, &self.frame.accel, self.time);
+                branch.wander_off(survival);
             }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);

@@ -54,7 +54,9 @@ impl Sample<'_> {
                 return Event::Surface(hit);
             }
             let clearing = &mut self.scratch.around.clearing;
-            clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
+            let sigma_t = medium.sigma_t.max_element();
+            let survival = clearing.traced_to(point, sigma_t, &self.frame.accel, self.time);
+            branch.wander_off(survival);
         }
         branch.throughput *= flight.scatter_weight(&medium, distance);
         Event::Particle(distance)

@@ -446,6 +446,18 @@ impl Branch {
         }
     }
 
+    /// Russian roulette for a path far outside; one that ends has no throughput.
+    ///
+    /// A walk without losses in a medium without end comes back from r times a body's size with a chance like 1 / r, after
+    /// like r^2 steps. Those that go on with 1 / r of the chance weigh r times as much, so that what comes back varies little.
+    #[inline]
+    pub(super) fn wander_off(&mut self, survival: f32) {
+        if survival < 1.0 {
+            let survives = self.stream.next4()[0] < survival;
+            self.throughput *= if survives { survival.recip() } else { 0.0 };
+        }
+    }
+
     /// False where the path has to be cut.
     #[inline]
     pub(super) fn is_below_the_longest(&self) -> bool {

@@ -13,16 +13,24 @@ use glam::DVec3;
 
 use super::{Interface, RawMesh};
 
-/// Joins triangles of the same three points; tells how many are gone. Without labels from the file only those of the
-/// same winding are joined: opaque sheets may well be written from both sides.
-pub(super) fn merge_coincident(mesh: &mut RawMesh, labelled: bool) -> usize {
+/// What becomes of two triangles on the same points that are wound against each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Twins {
+    /// They are one boundary, or none, as their labels say.
+    Joined,
+    /// They stay: opaque sheets may well be written from both sides.
+    Kept,
+}
+
+/// Joins triangles of the same three points; tells how many are gone.
+pub(super) fn merge_coincident(mesh: &mut RawMesh, twins: Twins) -> usize {
     let Some(mut interfaces) = mesh.interfaces.take() else { return 0 };
     let mut kept = vec![true; mesh.triangles.len()];
     for group in groups(mesh) {
         for (place, &first) in group.iter().enumerate() {
             for &other in &group[place + 1..] {
                 let turned = winding(mesh, first) != winding(mesh, other);
-                if !kept[first] || !kept[other] || (turned && !labelled) {
+                if !kept[first] || !kept[other] || (turned && twins == Twins::Kept) {
                     continue;
                 }
                 let Interface { front, back } = interfaces[other];
@@ -142,7 +150,7 @@ mod tests {
             (same, [(0, 1), (2, 3)], vec![(0, 1), (2, 3)]),
         ] {
             let mut mesh = sheets(second, given);
-            let dropped = merge_coincident(&mut mesh, true);
+            let dropped = merge_coincident(&mut mesh, Twins::Joined);
             assert_eq!(labels(&mesh), [expected.clone(), vec![(8, 9)]].concat(), "{given:?} {second:?}");
             assert_eq!(dropped, 2 - expected.len());
             assert_eq!(mesh.triangles.len(), expected.len() + 1);
@@ -152,8 +160,8 @@ mod tests {
     #[test]
     fn sheets_without_labels_keep_both_sides() {
         let mut mesh = sheets([4, 3, 5], [(0, 1), (0, 1)]);
-        assert_eq!(merge_coincident(&mut mesh, false), 0);
+        assert_eq!(merge_coincident(&mut mesh, Twins::Kept), 0);
         let mut mesh = sheets([4, 5, 3], [(0, 1), (0, 1)]);
-        assert_eq!(merge_coincident(&mut mesh, false), 1);
+        assert_eq!(merge_coincident(&mut mesh, Twins::Kept), 1);
     }
 }

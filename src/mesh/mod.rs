@@ -12,6 +12,7 @@ pub mod normals;
 pub mod topology;
 
 mod bobj;
+mod coarse;
 mod coincident;
 mod corner_classes;
 pub(crate) mod disjoint;
@@ -31,9 +32,10 @@ mod vtk;
 mod weld;
 mod words;
 
+pub use coarse::Coarse;
 pub use error::{MeshError, Place};
 pub use follow::{NotFollowed, follow};
-pub use prepare::{MeshWarning, prepare};
+pub use prepare::{MeshWarning, prepare, prepare_sheets};
 pub use read::{
     FORMATS, Format, Syntax, add_velocities, parse, read, read_bytes, read_with, velocities_beside,
 };

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use glam::{DVec3, Vec3};
 
-use super::coincident::merge_coincident;
+use super::coarse::Coarse;
+use super::coincident::{Twins, merge_coincident};
 use super::error::{Fault, MeshError, Place};
 use super::topology::topology;
 use super::{Interface, RawMesh, Region, weld};
@@ -50,6 +51,10 @@ pub enum MeshWarning {
     },
     /// A closed mesh without labels whose normals pointed inwards.
     InsideOut,
+    /// The outside lies within the other regions of a closed mesh with labels.
+    OutsideWithin,
+    /// Coordinates in single precision so far from zero that they have lost their detail.
+    Coarse(Coarse),
     /// Edges around which the labels (or, without labels, the windings) contradict each other.
     Inconsistent {
         /// How many.
@@ -95,6 +100,12 @@ impl fmt::Display for MeshWarning {
             Self::InsideOut => {
                 write!(f, "the normals of the closed surface point inwards; its sides were swapped")
             }
+            Self::OutsideWithin => write!(
+                f,
+                "label 0, the outside, lies within the other regions: in front of a triangle, where its right-hand \
+                 normal points, is label_front; swap the labels, or the order of the vertices"
+            ),
+            Self::Coarse(coarse) => coarse.fmt(f),
             Self::Velocities { not_finite, all } => {
                 write!(
                     f,
@@ -117,14 +128,28 @@ impl fmt::Display for MeshWarning {
 ///
 /// # Errors
 /// [`MeshError::Invalid`] when the parts of the mesh do not fit together; the readers return no such mesh.
-pub fn prepare(
+pub fn prepare(mesh: RawMesh, inside: Region, path: &Path) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
+    prepare_as(mesh, inside, Twins::Joined, path)
+}
+
+/// The same for a mesh that need not be the boundary of anything, and has no labels: a sheet may be written from both sides.
+///
+/// # Errors
+/// Those of [`prepare()`].
+pub fn prepare_sheets(mesh: RawMesh, path: &Path) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
+    prepare_as(RawMesh { interfaces: None, ..mesh }, Region(1), Twins::Kept, path)
+}
+
+fn prepare_as(
     mut mesh: RawMesh,
     inside: Region,
+    twins: Twins,
     path: &Path,
 ) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
     mesh.check().map_err(|fault| fault.in_file(path))?;
     let labelled = mesh.interfaces.is_some();
     let mut warnings = Vec::from_iter(still_the_not_finite(&mut mesh));
+    warnings.extend(Coarse::of(&mesh).map(MeshWarning::Coarse));
     let repeats = mesh.retain(|_, [a, b, c]| a != b && b != c && c != a);
     let mut report = topology(&mesh);
     let mut dropped = repeats;
@@ -144,12 +169,15 @@ pub fn prepare(
     if let Some(first) = report.first_inconsistent_edge {
         warnings.push(MeshWarning::Inconsistent { edges: report.inconsistent_edges, first });
     }
-    if !labelled {
-        let inside_out = report.is_closed() && signed_volume(&mesh) < 0.0;
+    if labelled {
+        let is_within = report.is_closed() && volume_within_outside(&mesh) < 0.0;
+        warnings.extend(is_within.then_some(MeshWarning::OutsideWithin));
+    } else {
+        let inside_out = report.is_closed() && volume(&mesh, |_| 1.0) < 0.0;
         warnings.extend(inside_out.then_some(MeshWarning::InsideOut));
         mesh.interfaces = Some(vec![interface_of(inside, inside_out); mesh.triangles.len()]);
     }
-    let coincident = merge_coincident(&mut mesh, labelled);
+    let coincident = merge_coincident(&mut mesh, twins);
     warnings.extend((coincident > 0).then_some(MeshWarning::Coincident { dropped: coincident }));
     if coincident > 0 && mesh.velocities.is_some() {
         // The sheets that are left must go on meeting where they move.
@@ -177,12 +205,30 @@ fn drop_same_region(mesh: &mut RawMesh) -> Option<MeshWarning> {
     Some(MeshWarning::SameRegion { dropped, region })
 }
 
-/// Six times the volume that a closed mesh encloses, positive when its normals point outwards.
-fn signed_volume(mesh: &RawMesh) -> f64 {
+/// Six times the volume that a closed mesh encloses, positive when its normals point outwards; each triangle counts as
+/// often as `side` says of its number. 0 where it cannot be told from rounding.
+fn volume(mesh: &RawMesh, side: impl Fn(usize) -> f64) -> f64 {
     // Relative to a point of the mesh, so that a far origin costs no digits.
     let origin = mesh.positions.first().copied().unwrap_or_default();
     let corner = |index: u32| mesh.positions[index as usize] - origin;
-    mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum()
+    let (mut sum, mut of_magnitudes) = (0.0, 0.0);
+    for (triangle, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+        let part: f64 = corner(a).dot(corner(b).cross(corner(c))) * side(triangle);
+        sum += part;
+        of_magnitudes += part.abs();
+    }
+    // Each part and each sum is off by a few roundings of what it is made of.
+    let rounding = 4.0 * f64::EPSILON * mesh.triangles.len() as f64 * of_magnitudes;
+    if f64::abs(sum) > rounding { sum } else { 0.0 }
+}
+
+/// Six times the volume of all that is not the outside; negative where the outside lies within it.
+fn volume_within_outside(mesh: &RawMesh) -> f64 {
+    volume(mesh, |triangle| match mesh.interfaces.as_deref().map(|interfaces| interfaces[triangle]) {
+        Some(Interface { front: Region::OUTSIDE, .. }) => 1.0,
+        Some(Interface { back: Region::OUTSIDE, .. }) => -1.0,
+        _ => 0.0,
+    })
 }
 
 /// Sets velocities that are not finite to zero.

@@ -13,7 +13,7 @@ use super::geometry::Geometry;
 use super::motion::Pace;
 use super::surface::{MediumPair, Surface, SurfaceId};
 use super::world::World;
-use crate::mesh::{self, CornerNormals, RawMesh, Region, VelocityName, normals};
+use crate::mesh::{self, CornerNormals, MeshWarning, RawMesh, VelocityName, normals};
 use crate::optics::medium::MediumId;
 use crate::spectrum::Role;
 
@@ -59,17 +59,20 @@ impl Parts {
         raw: RawMesh,
         path: &Path,
     ) -> Result<(), FrameError> {
-        // What a surface is follows from the scene file; labels that its file may carry mean nothing here.
-        let mut unlabelled = RawMesh { interfaces: None, ..raw };
-        if matches!(surface.material, MaterialDescription::Emitter { .. })
-            && unlabelled.velocities.take().is_some()
+        let mut raw = raw;
+        if matches!(surface.material, MaterialDescription::Emitter { .. }) && raw.velocities.take().is_some()
         {
             self.warn(path, ["lights stand still within a frame: the velocities of the mesh are left out"]);
         }
-        let (mut mesh, warnings) = mesh::prepare(unlabelled, Region(1), path)?;
-        if let MaterialDescription::Dielectric { .. } | MaterialDescription::Null { .. } = surface.material {
-            self.warn(path, warnings);
-        }
+        // What a surface is follows from the scene file; labels that its file may carry mean nothing here.
+        let (mut mesh, warnings) = mesh::prepare_sheets(raw, path)?;
+        let bounds_media = matches!(
+            surface.material,
+            MaterialDescription::Dielectric { .. } | MaterialDescription::Null { .. }
+        );
+        // How an opaque surface hangs together is its own affair.
+        let counts = |warning: &MeshWarning| bounds_media || matches!(warning, MeshWarning::Coarse(_));
+        self.warn(path, warnings.into_iter().filter(counts));
         // Front is the side of the normal as the file has it, whatever was made of an inside-out mesh.
         mesh.interfaces = None;
         let id = self.add_material(world, &surface.material);

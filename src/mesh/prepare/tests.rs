@@ -153,3 +153,25 @@ fn meshes_that_do_not_fit_together_are_refused() {
         assert!(error.to_string().starts_with("m.obj: "), "{error}");
     }
 }
+
+#[test]
+fn an_outside_within_the_others_is_told() {
+    let with = |front, back| RawMesh { interfaces: Some(vec![interface(front, back); 4]), ..tetrahedron() };
+    assert_eq!(prepared(with(1, 0)).1, [MeshWarning::OutsideWithin]);
+    // Of a surface between two others, or with a hole, nothing follows.
+    assert_eq!(prepared(with(2, 1)).1, []);
+    let mut open = with(1, 0);
+    open.retain_triangles(&[true, true, true, false]);
+    assert!(!prepared(open).1.contains(&MeshWarning::OutsideWithin));
+}
+
+/// Closed surfaces that touch have no boundary there, whether the file says so or not; opaque sheets have two sides.
+#[test]
+fn faces_on_each_other_that_look_apart_are_no_boundary_but_may_be_sheets() {
+    let mut sheet = tetrahedron();
+    sheet.triangles = vec![[0, 1, 2], [0, 2, 1]];
+    let (mesh, warnings) = prepared(sheet.clone());
+    assert_eq!((mesh.triangles.len(), &warnings[0]), (0, &MeshWarning::Coincident { dropped: 2 }));
+    let (mesh, _) = prepare_sheets(sheet, Path::new("mesh.ply")).unwrap();
+    assert_eq!(mesh.triangles.len(), 2);
+}

@@ -18,14 +18,20 @@ pub mod table;
 
 mod albedo;
 mod asymmetry;
+mod bodies;
 mod chromatic;
+mod contacts;
 mod extinction;
+mod frames;
 mod grazing;
 mod half_spaces;
 mod index;
+mod labels;
 mod limits;
+mod offsets;
 mod radiance;
 mod scale;
+mod slivers;
 mod sun;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
@@ -46,7 +52,7 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 13] = [
+pub const GROUPS: [Group; 18] = [
     extinction::GROUP,
     half_spaces::GROUP,
     albedo::GROUP,
@@ -60,6 +66,11 @@ pub const GROUPS: [Group; 13] = [
     limits::SAMPLES,
     limits::RESOLUTION,
     scale::GROUP,
+    offsets::GROUP,
+    slivers::GROUP,
+    contacts::GROUP,
+    labels::GROUP,
+    frames::GROUP,
 ];
 
 /// Which cases are run.

@@ -71,13 +71,22 @@ impl Scene {
     /// # Errors
     /// What is wrong with the text or a mesh.
     pub fn prepare(&self, text: &str) -> Result<Prepared, StudyError> {
+        self.prepare_after(text, None)
+    }
+
+    /// The same with what is kept of the frame before it.
+    ///
+    /// # Errors
+    /// Those of [`Self::prepare`].
+    pub fn prepare_after(&self, text: &str, before: Option<&Frame>) -> Result<Prepared, StudyError> {
         let description = SceneDescription::parse(text, Path::new(NAME)).map_err(RenderError::from)?;
         let sampling = Sampling::new(&description.render);
         let placement = Placement { eye: DVec3::new(0.0, -4.0, 0.0), target: DVec3::ZERO };
         let world =
             World::of_inputs(description, placement, self.inputs.clone()).map_err(RenderError::from)?;
-        let assembled =
-            world.assemble(FrameNumber::ONE, self.frame.iter().cloned(), None).map_err(RenderError::from)?;
+        let assembled = world
+            .assemble(FrameNumber::ONE, self.frame.iter().cloned(), before)
+            .map_err(RenderError::from)?;
         Ok(Prepared { frame: assembled.frame, sampling, warnings: assembled.warnings })
     }
 
