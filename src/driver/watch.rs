@@ -159,7 +159,8 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
     let samples = settings.samples;
     let previews = preview_samples(options.preview_samples, samples);
     let finished_options = RenderOptions { samples: Some(samples), resume: true, ..options.render.clone() };
-    let preview_options = RenderOptions { samples: previews, ..options.render.clone() };
+    let preview_options =
+        RenderOptions { samples: previews, look: true, time_budget: None, ..options.render.clone() };
     let showcase = Showcase::default();
     let workshop = Workshop { job, pattern: &pattern, showcase: &showcase };
     let finishing = Tagged::new(observer, false);
