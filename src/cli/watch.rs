@@ -50,7 +50,7 @@ pub struct WatchArguments {
     /// End when all is drawn and this file is in the folder of the frames
     #[arg(long, value_name = "NAME")]
     done_file: Option<String>,
-    /// Samples a pixel of previews, 0 for none [default: a sixteenth of the samples, at least 4]
+    /// Samples a pixel of previews, 0 for none [default: a sixteenth of the samples, at least 4; 4 with a target]
     #[arg(long, value_name = "N")]
     preview_samples: Option<u32>,
     /// Look at the folder so often even if the system tells of no change

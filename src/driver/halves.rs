@@ -12,9 +12,9 @@
 //! ```
 //!
 //! Each half is drawn as far as either needs it: up to max(n_A, n_B), rounded up to a rung. What lies beyond the count that
-//! is used is dropped (`samples_dropped` of the ledger: some per cent of what is drawn). A frame stops when both
-//! halves would. Each asks of the picture of two halves like it that its interval ends below the target; what the picture's
-//! own interval is, is told by samples that had no say in it, and may end a little above.
+//! is used is dropped (`samples_dropped` of the ledger: 2 to 4 % of what is drawn in `sequences/`). A frame stops when both
+//! halves would. Each asks of the picture of two halves like it that its interval ends at or below the target; where the
+//! picture's own interval ends is told by samples that had no say in it, and may be a little above.
 //!
 //! A round is a function of the samples alone, so a frame that goes on from a checkpoint goes on as it would have.
 
