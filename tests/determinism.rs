@@ -92,6 +92,18 @@ fn photons_change_no_byte_either() {
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
+/// Halves decide by sums in a fixed order; photon passes are looked at in between.
+#[test]
+fn a_target_changes_no_byte_on_any_number_of_threads() {
+    for (integrator, target) in [("path", 0.1), ("photon", 0.2)] {
+        let render = format!("[render]\nintegrator = \"{integrator}\"\ntarget_error = {target}\n");
+        let folder = wobbling_in(&shipped_scene(256).replace("[render]\n", &render));
+        let (sequence, _) = pictures(&folder, "0-1", 2);
+        assert_eq!(pictures(&folder, "0-1", 1).0, sequence, "{integrator}: one thread");
+        assert_eq!(pictures(&folder, "1,0", 5).0, sequence, "{integrator}: five threads, another order");
+    }
+}
+
 /// Frames 0 to 2 of a mesh that stands still, under a `render.seed_mode`.
 fn still(mode: &str) -> Pictures {
     let text = shipped_scene(4).replace("[render]\n", &format!("[render]\nseed_mode = \"{mode}\"\n"));

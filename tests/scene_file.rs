@@ -86,8 +86,9 @@ fn a_whole_scene_is_read_as_written() {
     assert!(scene.output.denoise);
     assert_eq!(
         scene.output.aovs,
-        [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Motion, Aov::Variance]
+        [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Motion, Aov::Variance, Aov::Samples]
     );
+    assert_eq!((scene.render.target_error, scene.render.confidence), (Some(0.02), 0.9));
 }
 
 #[test]
@@ -214,7 +215,7 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.a]\nmass_scattering = 5", 1, 1, "[media.a] has no `mass_concentration`: mass coefficients need it"),
     ("[media.ice]\nmodel = 'iceberg'", 2, 1, "unknown key `model` in [media.ice]"),
     ("[render]\nsample = 4", 2, 1, "did you mean `samples`?"),
-    ("[render]\ntarget_error = 0.1", 2, 1, "unknown key `target_error` in [render]"),
+    ("[render]\nlimit = 0.1", 2, 1, "unknown key `limit` in [render]"),
     ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\nlens = 1", 4, 1, "unknown key `lens` in [camera]"),
     ("[camera]\ntarget = [0, 0, 0]\neyes = [1, 1, 1]", 3, 1, "unknown key `eyes` in [camera]; did you mean `eye`?"),
     ("[media.sea]\nzz = 1\nior = 1\naa = 2", 2, 1, "unknown key `zz`"),
@@ -363,6 +364,8 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[camera]\nresolution = [0, 360]", 2, 15, "camera.resolution[0]: 0: write a whole number from 1 to 65536"),
     ("[camera]\nresolution = [640, 65537]", 2, 20, "camera.resolution[1]: 65537: write a whole number from 1"),
     ("[render]\nsamples = 0", 2, 11, "render.samples: 0: write a whole number from 1"),
+    ("[render]\ntarget_error = 0", 2, 16, "write a relative error from 0.000001 to 1, such as 0.02 for 2 %"),
+    ("[render]\nconfidence = 95", 2, 14, "render.confidence: 95: write a confidence from 0.5 to 0.9999"),
     ("[render]\nseed = -1", 2, 8, "render.seed: -1: write a whole number from 0 to 18446744073709551615"),
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
     (

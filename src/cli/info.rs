@@ -82,8 +82,15 @@ fn describe_job(job: &Job) -> String {
     }
     let [width, height] = world.description.camera.resolution;
     let render = &world.description.render;
-    let _ =
-        writeln!(text, "picture   {width} x {height}, {} samples, {}", render.samples, job.output_pattern());
+    let target = render.target_error.map_or_else(String::new, |error| {
+        format!(" at most, to an error of {} % at {} % confidence", 100.0 * error, 100.0 * render.confidence)
+    });
+    let _ = writeln!(
+        text,
+        "picture   {width} x {height}, {} samples{target}, {}",
+        render.samples,
+        job.output_pattern()
+    );
     let lanes = match world.mode {
         LaneMode::Rgb => "linear RGB",
         LaneMode::Spectral => "four wavelengths of 380 to 780 nm",

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::duration::duration;
+use super::duration::{duration, time};
 use super::exit::Exit;
 use super::progress::Progress;
 use super::settings::Settings;
@@ -32,6 +32,10 @@ pub struct RenderArguments {
     /// How often an unfinished frame is saved for --resume: 30s, 5m, 1h, or 0 for only when it is interrupted
     #[arg(long, value_name = "TIME", default_value = "5m", value_parser = duration)]
     checkpoint_every: Duration,
+    /// Write what there is of a frame after so much light transport: 30s, 5m, 1h; --resume without it, or with a longer
+    /// one, goes on
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    time_budget: Option<Duration>,
     /// Go on with the other frames when one fails; the exit code still tells
     #[arg(long)]
     keep_going: bool,
@@ -47,6 +51,7 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         keep_going: arguments.keep_going,
         denoise: arguments.denoise,
         resume: arguments.resume,
+        time_budget: arguments.time_budget,
         checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
         ..arguments.settings.options()
     };

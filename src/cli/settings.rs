@@ -18,9 +18,13 @@ pub struct Settings {
     /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
     #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
     pub output: Option<String>,
-    /// Samples a pixel [default: render.samples of the scene]
+    /// Samples a pixel, at most with a target [default: render.samples of the scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
+    /// Stop a frame when its relative error is at most so much, such as 0.02 or 2%, and sample its tiles as they need
+    /// [default: render.target_error of the scene]
+    #[arg(long, value_name = "E", value_parser = target_error)]
+    target_error: Option<f64>,
     /// Seed of every random number [default: render.seed of the scene]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
@@ -33,10 +37,20 @@ impl Settings {
             frames: self.frames.clone(),
             output: self.output.clone(),
             samples: self.samples,
+            target_error: self.target_error,
             seed: self.seed,
             ..RenderOptions::default()
         }
     }
+}
+
+/// A relative error, as a number or in per cent.
+pub(super) fn target_error(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number.trim_end(), 100.0));
+    let error = number.parse::<f64>().ok().map(|number| number / unit);
+    error.filter(|error| (1e-6..=1.0).contains(error)).ok_or_else(|| {
+        format!("`{text}` is no relative error: write a number from 0.000001 to 1, such as 0.02 or 2%")
+    })
 }
 
 /// A name for pictures; how many there will be is not known yet.

@@ -44,6 +44,7 @@ pub fn run(arguments: &StatusArguments) -> Exit {
 fn name(state: &FrameState) -> &'static str {
     match state {
         FrameState::Complete => "complete",
+        FrameState::Cut(_) => "cut",
         FrameState::Partial => "partial",
         FrameState::Missing => "missing",
         FrameState::Stale => "stale",
@@ -52,7 +53,7 @@ fn name(state: &FrameState) -> &'static str {
     }
 }
 
-const NAMES: [&str; 6] = ["complete", "partial", "missing", "stale", "corrupt", "unreadable"];
+const NAMES: [&str; 7] = ["complete", "cut", "partial", "missing", "stale", "corrupt", "unreadable"];
 
 fn numbers(states: &States, wanted: &str) -> Vec<FrameNumber> {
     states.iter().filter(|(_, state)| name(state) == wanted).map(|(number, _)| *number).collect()

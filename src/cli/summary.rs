@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::accel::Hierarchy;
-use crate::driver::{FrameRecord, RenderReport, Status};
+use crate::driver::{FrameRecord, RenderReport, Status, StoppedBy};
 use crate::integrator::Counters;
 use crate::sequence::{FrameNumber, format_numbers};
 
@@ -16,6 +16,7 @@ pub fn summary(report: &RenderReport) -> String {
         failures_line(report),
         interrupted_line(report),
         error_line(&done),
+        cut_line(&done),
         hierarchy_line(report),
         events_line(&done),
         left_out_line(report),
@@ -82,15 +83,57 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
         false => format!("at least {:.2} %", percent(worst.low)),
     };
     let interval = format!("{range} at {:.0} % confidence", percent(worst.confidence));
+    let effort = effort(done);
     Some(if errors.len() == 1 {
-        format!("estimated relative error {:.2} % ({interval})", percent(mean))
+        format!("estimated relative error {:.2} % ({interval}) {effort}", percent(mean))
     } else {
         let worst = percent(worst.estimate);
         format!(
-            "estimated relative error {:.2} %, worst {worst:.2} % in frame {frame} ({interval})",
+            "estimated relative error {:.2} %, worst {worst:.2} % in frame {frame} ({interval}), {effort}",
             percent(mean)
         )
     })
+}
+
+/// What the error was reached with, and what ended it where that was not the number of samples alone.
+fn effort(done: &[&FrameRecord]) -> String {
+    let frames = done.len() as f64;
+    let seconds = done.iter().map(|r| r.render_seconds).sum::<f64>() / frames;
+    let mut text = format!("after {seconds:.1} s{}", if done.len() == 1 { "" } else { " a frame" });
+    let pixels = || done.iter().filter_map(|r| r.samples_per_pixel);
+    let mean = pixels().map(|p| p.mean).sum::<f64>() / frames;
+    text += &format!(", {mean:.0} samples a pixel");
+    if let (Some(least), Some(most)) = (pixels().map(|p| p.least).min(), pixels().map(|p| p.most).max())
+        && least < most
+    {
+        text += &format!(" ({least} to {most})");
+    }
+    let bounded: Vec<_> =
+        done.iter().filter(|r| r.target_error.is_some() || r.time_budget.is_some()).collect();
+    let stops = [StoppedBy::Target, StoppedBy::Time, StoppedBy::Samples].into_iter().filter_map(|reason| {
+        let count = bounded.iter().filter(|r| r.stopped_by == Some(reason)).count();
+        let what = match reason {
+            StoppedBy::Target => "the target",
+            StoppedBy::Time => "the time budget",
+            StoppedBy::Samples => "the number of samples",
+        };
+        let times = if done.len() == 1 { String::new() } else { format!(" in {count}") };
+        (count > 0).then(|| format!("by {what}{times}"))
+    });
+    let stops: Vec<String> = stops.collect();
+    if stops.is_empty() { text } else { text + ", stopped " + &stops.join(", ") }
+}
+
+fn cut_line(done: &[&FrameRecord]) -> Option<String> {
+    let cut = done.iter().filter(|r| r.stopped_by == Some(StoppedBy::Time));
+    let numbers: Vec<FrameNumber> = cut.filter_map(|r| r.frame.parse().ok()).collect();
+    let line = || {
+        format!(
+            "cut when their time was up: {}; --resume without a budget, or with a longer one, goes on",
+            format_numbers(&numbers)
+        )
+    };
+    (!numbers.is_empty()).then(line)
 }
 
 /// How often the hierarchy was refitted; nothing for a single frame.

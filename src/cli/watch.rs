@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
-use super::duration::duration;
+use super::duration::time;
 use super::exit::Exit;
-use super::settings::output_pattern;
+use super::settings::{output_pattern, target_error};
 use super::streams::{print, say};
 use super::watching::Watching;
 use crate::driver::watch::{End, Order};
@@ -28,6 +28,13 @@ pub struct WatchArguments {
     /// Seed of every random number [default: render.seed of the scene]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
+    /// Stop a frame when its relative error is at most so much, such as 0.02 or 2%
+    /// [default: render.target_error of the scene]
+    #[arg(long, value_name = "E", value_parser = target_error)]
+    target_error: Option<f64>,
+    /// Write what there is of a frame after so much light transport: 30s, 5m, 1h
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    time_budget: Option<Duration>,
     /// Threads that render; as many more make previews [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -43,7 +50,7 @@ pub struct WatchArguments {
     /// End when all is drawn and this file is in the folder of the frames
     #[arg(long, value_name = "NAME")]
     done_file: Option<String>,
-    /// Samples a pixel of previews, 0 for none [default: a sixteenth of the samples, at least 4]
+    /// Samples a pixel of previews, 0 for none [default: a sixteenth of the samples, at least 4; 4 with a target]
     #[arg(long, value_name = "N")]
     preview_samples: Option<u32>,
     /// Look at the folder so often even if the system tells of no change
@@ -141,6 +148,8 @@ fn options(arguments: &WatchArguments, interrupt: Interrupt) -> WatchOptions {
             output: arguments.output.clone(),
             samples: arguments.samples,
             seed: arguments.seed,
+            target_error: arguments.target_error,
+            time_budget: arguments.time_budget,
             threads: arguments.threads.map(usize::from),
             interrupt,
             ..WatchOptions::default().render
@@ -187,10 +196,4 @@ fn summary(report: &WatchReport) -> String {
         Some((pattern, ledger)) => text + &format!("pictures {pattern}; ledger {}\n", ledger.display()),
         None => text,
     }
-}
-
-/// A time above 0.
-fn time(text: &str) -> Result<Duration, String> {
-    let time = duration(text)?;
-    if time.is_zero() { Err("it has to be above 0".into()) } else { Ok(time) }
 }

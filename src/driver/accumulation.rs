@@ -1,7 +1,10 @@
 //! How far the pixels of a frame have come: what rendering adds to, and what a checkpoint holds.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::half_tile::HalfTile;
+use super::uniform::next_round;
 use crate::film::{FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
 use crate::integrator::Counters;
 
@@ -20,17 +23,20 @@ pub struct Accumulation {
     pub(super) counters: Counters,
 }
 
-/// How far a tile has come. Its pixels are either rendered one after the other, or get a sample in each pass.
+/// How far a tile has come. Its pixels are rendered one after the other, or get some samples in each round, or are kept
+/// as halves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TilePart {
     /// The first pixels, which have all their samples.
     pub pixels: Vec<Pixel>,
-    /// Sums over the passes.
+    /// Sums over the rounds, of which photon passes are such of one sample.
     pub sums: Vec<PixelAccumulator>,
-    /// Passes in the sums of all pixels.
+    /// Samples in the sums of all pixels.
     pub passes: u32,
-    /// Pixels in whose sums there is one pass more.
+    /// Pixels in whose sums there is one round more.
     pub ahead: usize,
+    /// Halves of pixels.
+    pub halves: HalfTile,
     /// What happened to the paths of these samples.
     pub counters: Counters,
 }
@@ -53,18 +59,48 @@ impl Accumulation {
         fits
     }
 
-    /// Tiles whose pixels all have all their samples.
-    pub(super) fn traced(&self) -> usize {
-        self.parts.iter().zip(&self.rects).filter(|(part, rect)| part.pixels.len() == rect.area()).count()
+    /// Pixels of the frame.
+    pub(super) fn pixels(&self) -> u64 {
+        self.rects.iter().map(|rect| rect.area() as u64).sum()
     }
 
-    pub(super) fn is_traced(&self) -> bool {
-        self.traced() == self.rects.len()
+    /// Samples of all pixels so far, where all are to have `limit`; of pixels that are not done, those before.
+    pub(super) fn drawn(&self, limit: u32) -> u64 {
+        self.parts.iter().zip(&self.rects).map(|(part, rect)| part.drawn(*rect, limit)).sum()
+    }
+
+    /// Samples of each pixel after the next round; tiles that are rendered pixel by pixel get all in it.
+    pub(super) fn next_round(&self, limit: u32) -> u32 {
+        let in_rounds = self.parts.iter().filter(|part| part.pixels.is_empty());
+        in_rounds.map(|part| part.passes).min().map_or(limit, |samples| next_round(samples, limit))
     }
 
     /// Whether any sample is there.
     pub(super) fn is_begun(&self) -> bool {
-        self.parts.iter().any(|part| !part.pixels.is_empty() || part.passes > 0 || part.ahead > 0)
+        let is_begun = |part: &TilePart| !part.pixels.is_empty() || part.passes > 0 || part.ahead > 0;
+        self.parts.iter().any(|part| is_begun(part) || part.halves.is_used())
+    }
+
+    /// Samples in halves, those included that their picture does not use.
+    pub(super) fn in_halves(&self) -> u64 {
+        self.parts.iter().map(|part| part.halves.samples()).sum()
+    }
+
+    /// The picture so far, of a frame that is between two rounds.
+    pub(super) fn image(&self) -> FrameImage {
+        self.image_of(TilePart::picture)
+    }
+
+    /// A picture of pixels that are made of each tile.
+    pub(super) fn image_of(&self, pixels: impl Fn(&TilePart) -> Vec<Pixel> + Sync) -> FrameImage {
+        let [width, height] = self.resolution;
+        let tiles: Vec<Tile> = self
+            .parts
+            .par_iter()
+            .zip(&self.rects)
+            .map(|(part, rect)| Tile { rect: *rect, pixels: pixels(part) })
+            .collect();
+        FrameImage::from_tiles(width, height, tiles)
     }
 
     /// The picture, and what happened on the way.
@@ -73,11 +109,7 @@ impl Accumulation {
         let mut counters = self.counters;
         let tiles = self.parts.into_iter().zip(self.rects).map(|(part, rect)| {
             counters += part.counters;
-            let pixels = if part.sums.is_empty() {
-                part.pixels
-            } else {
-                part.sums.iter().map(PixelAccumulator::finish).collect()
-            };
+            let pixels = if part.pixels.is_empty() { part.picture() } else { part.pixels };
             Tile { rect, pixels }
         });
         let image = FrameImage::from_tiles(width, height, tiles);
@@ -87,9 +119,34 @@ impl Accumulation {
 }
 
 impl TilePart {
+    /// Samples that all pixels have, where all are to have `limit`.
+    pub fn samples(&self, rect: TileRect, limit: u32) -> u32 {
+        if self.pixels.len() == rect.area() { limit } else { self.passes }
+    }
+
+    /// Samples of all pixels together; of those that are not done, those before.
+    pub fn drawn(&self, rect: TileRect, limit: u32) -> u64 {
+        let area = rect.area() as u64;
+        self.pixels.len() as u64 * u64::from(limit) + area * u64::from(self.passes)
+    }
+
+    /// The pixels as they are.
+    fn picture(&self) -> Vec<Pixel> {
+        if self.halves.is_used() {
+            self.halves.pixels()
+        } else if self.sums.is_empty() {
+            self.pixels.clone()
+        } else {
+            self.sums.iter().map(PixelAccumulator::finish).collect()
+        }
+    }
+
     fn fits(&self, rect: TileRect) -> bool {
         let area = rect.area();
-        if self.sums.is_empty() {
+        if self.halves.is_used() {
+            let is_alone = self.pixels.is_empty() && self.sums.is_empty() && self.passes == 0;
+            is_alone && self.ahead == 0 && self.halves.fits(rect)
+        } else if self.sums.is_empty() {
             self.pixels.len() <= area && self.passes == 0 && self.ahead == 0
         } else {
             self.pixels.is_empty() && self.sums.len() == area && self.ahead < area

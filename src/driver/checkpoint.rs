@@ -1,7 +1,7 @@
 //! A frame that is not done yet, on the disk: `.frame_0001.checkpoint` beside `frame_0001.exr`.
 //!
 //! ```text
-//! head (what kind of file, sizes of what is in it), fingerprint, tiles and counters, SHA-256 of all before it
+//! head (what kind of file, sizes of what is in it), fingerprint, tiles, counters and seconds, SHA-256 of all before it
 //! ```
 //!
 //! Sums are there bit by bit, so a frame that goes on ends as the same bytes. The file is replaced in one step and
@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 use super::accumulation::{Accumulation, TilePart};
 use super::fingerprint::Fingerprint;
 use crate::film::write::StagedFile;
-use crate::film::{FilmError, Pixel, PixelAccumulator};
+use crate::film::{FilmError, HalfSums, Pixel, PixelAccumulator};
 use crate::integrator::Counters;
 
 /// Bytes of the checksum.
@@ -24,8 +24,9 @@ const CHECKSUM: usize = 32;
 
 /// What a file begins with. Pixels of another size are those of another build.
 fn head() -> String {
-    let sizes = [size_of::<Pixel>(), size_of::<PixelAccumulator>(), size_of::<Counters>()];
-    format!("floe checkpoint 1 {sizes:?}\n")
+    let sizes =
+        [size_of::<Pixel>(), size_of::<PixelAccumulator>(), size_of::<HalfSums>(), size_of::<Counters>()];
+    format!("floe checkpoint 2 {sizes:?}\n")
 }
 
 /// The checkpoint of a picture.
@@ -55,12 +56,12 @@ impl Checkpoint {
         File::open(&self.path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == wanted
     }
 
-    /// Replaces it.
+    /// Replaces it by a frame that has taken so many seconds.
     ///
     /// # Errors
     /// When it cannot be written; the one before it is left then.
-    pub fn save(&self, accumulation: &Accumulation) -> Result<(), FilmError> {
-        let contents = (&accumulation.parts, &accumulation.counters);
+    pub fn save(&self, accumulation: &Accumulation, seconds: f64) -> Result<(), FilmError> {
+        let contents = (&accumulation.parts, &accumulation.counters, seconds);
         StagedFile::written(&self.path, |file| {
             let mut hashed = Hashed { file, hasher: Sha256::new() };
             hashed.write_all(head().as_bytes())?;
@@ -73,25 +74,25 @@ impl Checkpoint {
         .commit()
     }
 
-    /// Puts what it holds into an accumulation; false when there is none.
+    /// Puts what it holds into an accumulation and tells the seconds that this took; `None` when there is none.
     ///
     /// # Errors
     /// Why one that is there is of no use, in words; the accumulation is as it was then.
-    pub fn load(&self, accumulation: &mut Accumulation) -> Result<bool, String> {
+    pub fn load(&self, accumulation: &mut Accumulation) -> Result<Option<f64>, String> {
         let bytes = match std::fs::read(&self.path) {
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(self.says(&format!("cannot be read: {error}"))),
         };
-        let (parts, counters) = self.decode(&bytes).map_err(|reason| self.says(reason))?;
+        let (parts, counters, seconds) = self.decode(&bytes).map_err(|reason| self.says(reason))?;
         if accumulation.restore(parts, counters) {
-            Ok(true)
+            Ok(Some(seconds))
         } else {
             Err(self.says("is of a picture of another size"))
         }
     }
 
-    fn decode(&self, bytes: &[u8]) -> Result<(Vec<TilePart>, Counters), &'static str> {
+    fn decode(&self, bytes: &[u8]) -> Result<Contents, &'static str> {
         let damaged = "is damaged";
         let (body, checksum) = bytes.split_last_chunk::<CHECKSUM>().ok_or(damaged)?;
         if Sha256::digest(body).as_slice() != checksum {
@@ -119,6 +120,9 @@ impl Checkpoint {
         let _ = std::fs::remove_file(Self::path_beside(picture));
     }
 }
+
+/// Tiles, counters, and the seconds that they took.
+type Contents = (Vec<TilePart>, Counters, f64);
 
 /// Hashes what it writes.
 struct Hashed<'a> {
@@ -153,7 +157,7 @@ mod tests {
         sum.add(1, &FilmSample::of_sky(Vec3::new(0.1, f32::MIN_POSITIVE / 4.0, -0.3)));
         begun.parts[0].pixels = vec![sum.finish(); 7];
         begun.parts[0].counters.rays = u64::MAX;
-        begun.parts[1].sums = vec![sum; 12];
+        begun.parts[1].sums = vec![sum.clone(); 12];
         begun.parts[1].passes = 5;
         begun.parts[1].ahead = 11;
         begun.counters.photons = 8;
@@ -165,10 +169,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let checkpoint = Checkpoint::of(&folder.path().join("a.1.exr"), FINGERPRINT);
         let mut loaded = Accumulation::new([20, 3]);
-        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(false), false));
-        checkpoint.save(&begun()).unwrap();
+        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(None), false));
+        checkpoint.save(&begun(), 2.5).unwrap();
         assert!(folder.path().join(".a.1.checkpoint").is_file());
-        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(true), true));
+        assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(Some(2.5)), true));
         assert_eq!(loaded, begun());
         checkpoint.remove();
         assert!(!checkpoint.is_there());
@@ -178,7 +182,7 @@ mod tests {
     fn another_frame_and_another_size_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let picture = folder.path().join("a.exr");
-        Checkpoint::of(&picture, FINGERPRINT).save(&begun()).unwrap();
+        Checkpoint::of(&picture, FINGERPRINT).save(&begun(), 2.5).unwrap();
         let other = Checkpoint::of(&picture, Fingerprint([4; 16]));
         let mut loaded = Accumulation::new([20, 3]);
         assert!(other.load(&mut loaded).unwrap_err().contains("another scene, mesh or frame"));
@@ -193,7 +197,7 @@ mod tests {
     fn damage_is_noticed_at_every_byte() {
         let folder = tempfile::tempdir().unwrap();
         let checkpoint = Checkpoint::of(&folder.path().join("a.exr"), FINGERPRINT);
-        checkpoint.save(&begun()).unwrap();
+        checkpoint.save(&begun(), 2.5).unwrap();
         let whole = std::fs::read(&checkpoint.path).unwrap();
         assert!(checkpoint.decode(&whole).is_ok());
         for at in 0..whole.len() {

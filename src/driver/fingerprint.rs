@@ -91,6 +91,9 @@ fn add(hasher: &mut Sha256, bytes: &[u8]) {
 fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String {
     let mut counts = scene.clone();
     counts.render = settings.clone();
+    if settings.target_error.is_none() {
+        counts.render.confidence = RenderDescription::default().confidence;
+    }
     counts.file = PathBuf::new();
     counts.directory = PathBuf::new();
     if let Some(frames) = &mut counts.frames {

@@ -1,12 +1,12 @@
 //! Keeps what is done of a frame: on a timer, when it is asked for, and when the run has to stop.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::accumulation::Accumulation;
 use super::checkpoint::Checkpoint;
 use super::interrupt::Interrupt;
-use super::render::Observer;
+use super::render::{Observer, RenderOptions};
 use super::tiles::Control;
 
 /// Least time between two checkpoints on the timer, in milliseconds: a frame must get on in between.
@@ -18,6 +18,9 @@ pub(super) struct Keeper<'a> {
     pub interrupt: &'a Interrupt,
     /// Where it is kept; a preview is not.
     pub checkpoint: Option<&'a Checkpoint>,
+    /// Seconds that the frame may take in all, and has taken in earlier runs.
+    budget: Option<f64>,
+    before: f64,
     start: Instant,
     /// Milliseconds between two checkpoints on the timer, and those from the start to the next one.
     every: u64,
@@ -25,16 +28,36 @@ pub(super) struct Keeper<'a> {
 }
 
 impl<'a> Keeper<'a> {
-    /// Saves what is done each time that `every`, or a tenth of a second, has passed; never on a timer without it.
+    /// Saves what is done each time that `checkpoint_every`, or a tenth of a second, has passed; never on a timer without
+    /// it.
     pub fn new(
         observer: &'a dyn Observer,
-        interrupt: &'a Interrupt,
+        options: &'a RenderOptions,
         checkpoint: Option<&'a Checkpoint>,
-        every: Option<Duration>,
     ) -> Self {
-        let every =
-            every.map_or(u64::MAX, |every| u64::try_from(every.as_millis()).unwrap_or(u64::MAX).max(LEAST));
-        Self { observer, interrupt, checkpoint, start: Instant::now(), every, next: AtomicU64::new(every) }
+        let every = options
+            .checkpoint_every
+            .map_or(u64::MAX, |every| u64::try_from(every.as_millis()).unwrap_or(u64::MAX).max(LEAST));
+        Self {
+            observer,
+            interrupt: &options.interrupt,
+            checkpoint,
+            budget: options.time_budget.map(|budget| budget.as_secs_f64()),
+            before: 0.0,
+            start: Instant::now(),
+            every,
+            next: AtomicU64::new(every),
+        }
+    }
+
+    /// The frame goes on, after so many seconds in earlier runs.
+    pub fn goes_on(&mut self, seconds: f64) {
+        self.before = seconds;
+    }
+
+    /// What the frame has taken so far, in all runs.
+    fn seconds(&self) -> f64 {
+        self.before + self.start.elapsed().as_secs_f64()
     }
 
     fn milliseconds(&self) -> u64 {
@@ -51,6 +74,10 @@ impl Control for Keeper<'_> {
         self.interrupt.is_requested()
     }
 
+    fn seconds_left(&self) -> Option<f64> {
+        self.budget.map(|budget| budget - self.seconds())
+    }
+
     fn wants_save(&self) -> bool {
         let is_time =
             || self.interrupt.wants_save() || self.milliseconds() >= self.next.load(Ordering::Relaxed);
@@ -60,7 +87,7 @@ impl Control for Keeper<'_> {
     /// A disk that is full is no reason to lose the frame.
     fn save(&self, accumulation: &Accumulation) {
         let Some(checkpoint) = self.checkpoint else { return };
-        if let Err(error) = self.interrupt.while_writing(|| checkpoint.save(accumulation)) {
+        if let Err(error) = self.interrupt.while_writing(|| checkpoint.save(accumulation, self.seconds())) {
             self.observer.warning(&format!("no checkpoint: {error}"));
         }
         self.next.store(self.milliseconds().saturating_add(self.every), Ordering::Relaxed);

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::error::RenderError;
+use super::stopping::StoppedBy;
 use crate::accel::Hierarchy;
-use crate::film::ErrorEstimate;
+use crate::film::{ErrorEstimate, FrameImage};
 use crate::integrator::Counters;
 
 /// What became of a frame.
@@ -68,6 +69,16 @@ pub struct FrameRecord {
     pub write_seconds: f64,
     /// Samples over all pixels.
     pub samples: u64,
+    /// The same of a pixel; `None` when there is no picture.
+    pub samples_per_pixel: Option<PerPixel>,
+    /// Samples that were drawn but are in no mean, since the other half of the frame did not ask for them.
+    pub samples_dropped: u64,
+    /// Why there are not more samples; `None` when there is no picture.
+    pub stopped_by: Option<StoppedBy>,
+    /// Relative error at which the frame was to stop.
+    pub target_error: Option<f64>,
+    /// Seconds that its light transport might take, in all runs.
+    pub time_budget: Option<f64>,
     /// Estimated relative error; `None` with fewer than two replicates.
     pub relative_error: Option<RelativeError>,
     /// Rays and rare events, those before a checkpoint included.
@@ -90,6 +101,26 @@ pub struct RelativeError {
     pub high: f64,
     /// Its confidence.
     pub confidence: f64,
+}
+
+/// Samples of the pixels of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PerPixel {
+    /// Their mean.
+    pub mean: f64,
+    /// The fewest.
+    pub least: u32,
+    /// The most.
+    pub most: u32,
+}
+
+impl PerPixel {
+    /// Of a picture; `None` of one without pixels.
+    pub fn of(image: &FrameImage) -> Option<Self> {
+        let samples = || image.pixels.iter().map(|pixel| pixel.samples);
+        let mean = image.samples() as f64 / image.pixels.len() as f64;
+        Some(Self { mean, least: samples().min()?, most: samples().max()? })
+    }
 }
 
 impl From<ErrorEstimate> for RelativeError {
@@ -120,6 +151,11 @@ impl FrameRecord {
             render_seconds: 0.0,
             write_seconds: 0.0,
             samples: 0,
+            samples_per_pixel: None,
+            samples_dropped: 0,
+            stopped_by: None,
+            target_error: None,
+            time_budget: None,
             relative_error: None,
             counters: Counters::default(),
             left_out: Vec::new(),

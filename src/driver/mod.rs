@@ -4,30 +4,40 @@
 //! tiles of one frame while one more makes the next frame ready, and writes a line into the ledger for each. A bad frame
 //! never takes the others with it when [`RenderOptions::keep_going`] is set.
 //!
+//! A frame ends with its last sample, at a target for its error, or when its time is up ([`stopping`]).
+//!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
 pub mod accumulation;
 mod ahead;
+mod allocation;
 mod arrivals;
 mod checkpoint;
 pub mod error;
 pub mod fingerprint;
 pub mod frame_seeds;
 mod guard;
+mod half_tile;
+mod halves;
 pub mod interrupt;
 pub mod job;
 mod keeper;
+mod ladder;
 pub mod ledger;
 pub mod meshes;
+mod passes;
 pub mod picture;
 pub mod preview;
 pub mod ready;
 pub mod render;
 mod resume;
 mod session;
+pub mod stopping;
 pub mod survey;
+mod tile_loop;
 pub mod tiles;
+mod uniform;
 pub mod watch;
 pub mod whole;
 
@@ -38,5 +48,6 @@ pub use job::Job;
 pub use ledger::{FrameRecord, Status};
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use stopping::{StoppedBy, Target};
 pub use survey::{FrameState, survey};
 pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

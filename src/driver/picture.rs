@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::fingerprint::{Fingerprint, Identity};
 use crate::film::exr_seal::{check_seal, text_attribute};
@@ -15,6 +16,9 @@ pub const FINGERPRINT: &str = "floe:fingerprint";
 /// Name of the attribute with the hash of the frame's meshes.
 pub const MESH_HASH: &str = "floe:meshHash";
 
+/// Name of the attribute with the time, in seconds, after which the frame was cut; only where it was.
+pub const TIME_BUDGET: &str = "floe:timeBudget";
+
 /// Longest header that is looked at, in bytes; those of floe have some 2,000.
 const LONGEST_HEADER: u64 = 64 << 10;
 
@@ -25,6 +29,8 @@ pub enum PictureState {
     Missing,
     /// The picture, whole.
     Complete,
+    /// The picture of a frame whose time was up, which was so long: the file is whole, but more samples were asked for.
+    Cut(Duration),
     /// A whole picture of another scene, other settings or another mesh.
     Stale,
     /// A file that is damaged, or no picture of floe's; with what is wrong.
@@ -41,10 +47,26 @@ impl PictureState {
         };
         match check_seal(&bytes) {
             Err(reason) => Self::Corrupt(reason.into()),
-            Ok(()) if text_attribute(&bytes, FINGERPRINT) == Some(&fingerprint.to_string()) => Self::Complete,
+            Ok(()) if text_attribute(&bytes, FINGERPRINT) == Some(&fingerprint.to_string()) => {
+                time_budget(&bytes).map_or(Self::Complete, Self::Cut)
+            }
             Ok(()) => Self::Stale,
         }
     }
+
+    /// Whether a run that gives each frame so much time has nothing to add.
+    pub fn is_enough(&self, time_budget: Option<Duration>) -> bool {
+        match self {
+            Self::Complete => true,
+            Self::Cut(spent) => time_budget.is_some_and(|budget| budget <= *spent),
+            Self::Missing | Self::Stale | Self::Corrupt(_) => false,
+        }
+    }
+}
+
+/// The time after which a frame was cut, if it was.
+fn time_budget(bytes: &[u8]) -> Option<Duration> {
+    Duration::try_from_secs_f64(text_attribute(bytes, TIME_BUDGET)?.parse().ok()?).ok()
 }
 
 /// Which frame of which scene a picture says it is; `None` when it does not say, or cannot be read. Only its header

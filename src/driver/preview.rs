@@ -30,6 +30,7 @@ pub fn options(options: RenderOptions) -> RenderOptions {
     RenderOptions {
         output: options.output.as_deref().map(place),
         samples: options.samples.map(|samples| samples.min(SAMPLES)),
+        look: true,
         ..options
     }
 }

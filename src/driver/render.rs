@@ -24,8 +24,14 @@ pub struct RenderOptions {
     pub frames: Option<FrameSelection>,
     /// Pattern of the pictures' names.
     pub output: Option<String>,
-    /// Samples a pixel.
+    /// Samples a pixel, at most where there is a target.
     pub samples: Option<u32>,
+    /// Relative error at which a frame stops.
+    pub target_error: Option<f64>,
+    /// Light transport of a frame, in all runs: what is there then is its picture.
+    pub time_budget: Option<Duration>,
+    /// Only a look: whatever the scene says, no frame has a target.
+    pub look: bool,
     /// Seed.
     pub seed: Option<u64>,
     /// Threads that render, besides one that makes the next frame ready; all cores without it.
@@ -47,6 +53,7 @@ impl RenderOptions {
     pub fn settings(&self, scene: &RenderDescription) -> RenderDescription {
         RenderDescription {
             samples: self.samples.unwrap_or(scene.samples),
+            target_error: self.target_error.or(scene.target_error).filter(|_| !self.look),
             seed: self.seed.unwrap_or(scene.seed),
             ..scene.clone()
         }
@@ -115,8 +122,7 @@ pub fn render(
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     let asked = tasks.len() + absent.len();
     let tasks = if options.resume {
-        let denoise = options.wants_denoised(&job.world.description);
-        let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, denoise, observer));
+        let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, options, observer));
         session.report.already = left.already;
         left.tasks
     } else {

@@ -9,7 +9,7 @@ use super::checkpoint::Checkpoint;
 use super::fingerprint::Fingerprints;
 use super::job::{FrameTask, Job};
 use super::picture::{PictureState, denoised_path, picture_path, png_path, read_identity};
-use super::render::Observer;
+use super::render::{Observer, RenderOptions};
 use super::survey::FrameState;
 use crate::film::png::has_exposure;
 use crate::film::{FilmError, write_png_of};
@@ -30,13 +30,21 @@ pub(super) fn left(
     fingerprints: &Fingerprints,
     pattern: &str,
     tasks: Vec<FrameTask>,
-    denoise: bool,
+    options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Left {
+    let denoise = options.wants_denoised(&job.world.description);
     let state = |task: &FrameTask| {
         let picture = picture_path(pattern, task.number);
         match FrameState::of(&job.world, fingerprints, task, &picture) {
-            FrameState::Complete => complete(job, &picture, denoise),
+            FrameState::Complete => {
+                Checkpoint::remove_beside(&picture);
+                complete(job, &picture, denoise)
+            }
+            // What more time would be needed for is still in its checkpoint.
+            FrameState::Cut(time) if PictureState::Cut(time).is_enough(options.time_budget) => {
+                complete(job, &picture, denoise)
+            }
             state => state,
         }
     };
@@ -54,7 +62,7 @@ pub(super) fn left(
                 let picture = picture_path(pattern, task.number);
                 observer.warning(&format!("{}: {reason}; it is drawn again", picture.display()));
             }
-            FrameState::Partial | FrameState::Missing | FrameState::Unreadable(_) => {}
+            FrameState::Cut(_) | FrameState::Partial | FrameState::Missing | FrameState::Unreadable(_) => {}
         }
         left.tasks.push(task);
     }
@@ -68,7 +76,6 @@ pub(super) fn left(
 
 /// What is beside a picture that is whole and up to date is brought up to date too.
 fn complete(job: &Job, picture: &Path, denoise: bool) -> FrameState {
-    Checkpoint::remove_beside(picture);
     let denoised = denoise.then(|| denoised_path(picture));
     // Noise is taken from more than the picture holds, such as albedo and normals: the frame is drawn again.
     if denoised.as_ref().is_some_and(|denoised| !is_of_the_same(denoised, picture)) {
@@ -83,8 +90,10 @@ fn complete(job: &Job, picture: &Path, denoise: bool) -> FrameState {
 
 /// Whether a picture without noise is whole and has the fingerprint of its picture.
 fn is_of_the_same(denoised: &Path, picture: &Path) -> bool {
-    read_identity(picture)
-        .is_some_and(|id| PictureState::of(denoised, &id.fingerprint) == PictureState::Complete)
+    read_identity(picture).is_some_and(|id| {
+        let states = [denoised, picture].map(|path| PictureState::of(path, &id.fingerprint));
+        states[0] == states[1] && matches!(states[0], PictureState::Complete | PictureState::Cut(_))
+    })
 }
 
 /// Makes the PNG of a picture that is there without the one that the scene wants, or with one of another exposure.
@@ -101,7 +110,7 @@ pub(super) fn add_missing_png(job: &Job, picture: &Path) -> Result<(), FilmError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::{RenderOptions, render};
+    use crate::driver::render;
 
     struct Silent;
     impl Observer for Silent {}
@@ -126,7 +135,10 @@ mod tests {
         let job = Job::open(&scene).unwrap();
         let fingerprints = Fingerprints::new(&job.world, &job.world.description.render);
         let pattern = picture.to_str().unwrap();
-        let count = |denoise| left(&job, &fingerprints, pattern, job.tasks(), denoise, &Silent).tasks.len();
+        let count = |denoise| {
+            let options = RenderOptions { denoise, ..RenderOptions::default() };
+            left(&job, &fingerprints, pattern, job.tasks(), &options, &Silent).tasks.len()
+        };
         assert_eq!((count(false), count(true)), (0, 1));
         let denoised = folder.path().join("a.denoised.exr");
         std::fs::copy(&stale, &denoised).unwrap();

@@ -10,13 +10,14 @@ use super::fingerprint::Identity;
 use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::keeper::Keeper;
-use super::ledger::{FrameRecord, Ledger, Status};
-use super::picture::{FINGERPRINT, MESH_HASH, denoised_path, picture_path as picture, png_path};
+use super::ledger::{FrameRecord, Ledger, PerPixel, Status};
+use super::picture::{FINGERPRINT, MESH_HASH, TIME_BUDGET, denoised_path, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
+use super::stopping::StoppedBy;
 use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
 use crate::film::write::remove_abandoned;
-use crate::film::{DEFAULT_CONFIDENCE, Denoiser, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::film::{Denoiser, ErrorEstimate, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::integrator::{Counters, Integrator};
 use crate::scene::assembly::Assembled;
 use crate::scene::camera::Camera;
@@ -125,9 +126,13 @@ impl<'a> Session<'a> {
             }
             let image = traced?;
             let camera = &ready.assembled.frame.views.opening;
-            let write = || self.write_all(&image, camera, (task.number, &ready.identity), &output);
+            let of = Of { number: task.number, identity: &ready.identity, stopped_by: record.stopped_by };
+            let write = || self.write_all(&image, camera, of, &output);
             timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
-            checkpoint.remove();
+            // A frame that was cut may go on one day.
+            if record.stopped_by != Some(StoppedBy::Time) {
+                checkpoint.remove();
+            }
             Ok(image)
         });
         record.status = match outcome {
@@ -168,6 +173,8 @@ impl<'a> Session<'a> {
         record.read_seconds = preparation.read_seconds;
         record.build_seconds = preparation.build_seconds;
         record.wait_seconds = preparation.wait_seconds;
+        record.target_error = self.settings.target_error;
+        record.time_budget = self.options.time_budget.map(|budget| budget.as_secs_f64());
         record
     }
 
@@ -186,18 +193,17 @@ impl<'a> Session<'a> {
         }
         self.sampling.seed = self.seeds.of_frame(task.number)?;
         let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
-        let (image, counters) = drawn.ok_or(RenderError::Interrupted)?;
+        let Drawn { image, counters, stopped_by, dropped } = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
         record.samples = image.samples();
-        let error = estimate_error(&image, DEFAULT_CONFIDENCE);
-        record.relative_error = error.map(Into::into);
+        record.samples_per_pixel = PerPixel::of(&image);
+        record.samples_dropped = dropped;
+        record.stopped_by = Some(stopped_by);
+        let estimate = estimate_error(&image, self.settings.confidence);
+        record.relative_error = estimate.map(Into::into);
         // That a preview is noisy is no news.
-        if let Some(doubt) = error.and_then(|e| e.warning()).filter(|_| checkpoint.is_some()) {
-            let cure = match self.sampling.integrator {
-                Integrator::Photon(_) => "more samples tell",
-                _ => "more samples tell, and integrator = \"photon\" finds what chance does not",
-            };
-            let text = format!("frame {}: {doubt}; {cure}", task.number);
+        let doubt = checkpoint.and_then(|_| self.doubt(record, estimate));
+        for text in doubt.into_iter().chain(self.missed(record, estimate)) {
             self.observer.warning(&text);
             record.warnings.push(text);
         }
@@ -221,22 +227,67 @@ impl<'a> Session<'a> {
     }
 
     /// Draws a frame, or goes on with one that has a checkpoint; `None` when the run is to stop before it is done.
-    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Option<(FrameImage, Counters)> {
+    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Option<Drawn> {
         let mut accumulation = Accumulation::new(frame.views.opening.resolution());
-        if self.options.resume
-            && let Some(Err(reason)) = checkpoint.map(|checkpoint| checkpoint.load(&mut accumulation))
-        {
-            self.observer.warning(&reason);
+        let loaded = checkpoint.filter(|_| self.options.resume).map(|c| c.load(&mut accumulation));
+        let mut keeper = Keeper::new(self.observer, self.options, checkpoint);
+        match loaded {
+            Some(Ok(Some(seconds))) => keeper.goes_on(seconds),
+            Some(Err(reason)) => self.observer.warning(&reason),
+            Some(Ok(None)) | None => {}
         }
-        let RenderOptions { interrupt, checkpoint_every, .. } = self.options;
-        let keeper = Keeper::new(self.observer, interrupt, checkpoint, *checkpoint_every);
-        if accumulate(&mut accumulation, frame, &self.sampling, &keeper) {
-            return Some(accumulation.finish());
-        }
-        if accumulation.is_begun() {
+        let stopped_by = accumulate(&mut accumulation, frame, &self.sampling, &keeper);
+        let may_go_on = stopped_by.is_none_or(|reason| reason == StoppedBy::Time);
+        if may_go_on && accumulation.is_begun() {
             keeper.save(&accumulation);
         }
-        None
+        let stopped_by = stopped_by?;
+        let in_halves = accumulation.in_halves();
+        let (image, counters) = accumulation.finish();
+        let dropped = in_halves.saturating_sub(image.samples());
+        Some(Drawn { image, counters, stopped_by, dropped })
+    }
+
+    /// What to tell of a frame whose error is not sure.
+    fn doubt(&self, record: &FrameRecord, estimate: Option<ErrorEstimate>) -> Option<String> {
+        let doubt = estimate?.warning()?;
+        let cure = match self.sampling.integrator {
+            Integrator::Photon(_) => "more samples tell",
+            _ => "more samples tell, and integrator = \"photon\" finds what chance does not",
+        };
+        Some(format!("frame {}: {doubt}; {cure}", record.frame))
+    }
+
+    /// What to tell of a frame that has all its samples and more error than it was to have.
+    fn missed(&self, record: &FrameRecord, estimate: Option<ErrorEstimate>) -> Option<String> {
+        let target = self.settings.target_error.filter(|_| record.stopped_by == Some(StoppedBy::Samples))?;
+        let samples = self.settings.samples;
+        let Some(ErrorEstimate { relative, high, .. }) = estimate else {
+            return Some(format!(
+                "frame {}: with {samples} samples a pixel its error is unknown; let it have 16 at least",
+                record.frame
+            ));
+        };
+        if high.is_infinite() {
+            return Some(format!(
+                "frame {}: its error is above the target of {} with all {samples} samples a pixel, and nobody can say \
+                 by how much",
+                record.frame,
+                percent(target)
+            ));
+        }
+        // The squared error falls as the number of samples grows.
+        let needed = f64::from(samples) * (high / target) * (high / target);
+        (high > target).then(|| {
+            format!(
+                "frame {}: its error, {} (up to {}), is above the target of {} with all {samples} samples a pixel; \
+                 about {needed:.0} would do: write samples = {needed:.0} into [render] of the scene file",
+                record.frame,
+                percent(relative),
+                percent(high),
+                percent(target)
+            )
+        })
     }
 
     /// Writes the picture and, if that is asked for, `frame_0001.denoised.exr` beside `frame_0001.exr`.
@@ -244,34 +295,34 @@ impl<'a> Session<'a> {
         &self,
         image: &FrameImage,
         camera: &Camera,
-        (number, identity): (FrameNumber, &Identity),
+        of: Of<'_>,
         path: &Path,
     ) -> Result<(), RenderError> {
         // A denoiser that fails does not cost the picture.
         let denoised = self.denoiser.as_ref().map_or(Ok(()), |denoiser| {
             let path = denoised_path(path);
-            self.write(&denoiser.denoised(image)?, camera, (number, identity), &path, true)
+            self.write(&denoiser.denoised(image)?, camera, of, &path, true)
         });
-        self.write(image, camera, (number, identity), path, false).and(denoised)
+        self.write(image, camera, of, path, false).and(denoised)
     }
 
     fn write(
         &self,
         image: &FrameImage,
         camera: &Camera,
-        (number, identity): (FrameNumber, &Identity),
+        of: Of<'_>,
         path: &Path,
         denoised: bool,
     ) -> Result<(), RenderError> {
         let world = &self.job.world;
         let output = &world.description.output;
         let metadata = ImageMetadata {
-            frame_number: number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
+            frame_number: of.number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
             fps: world.fps(),
             world_to_camera: camera.world_to_camera(world.origin),
             world_to_ndc: camera.world_to_ndc(world.origin),
             attributes: self
-                .attributes(number, identity)
+                .attributes(of)
                 .into_iter()
                 .chain(denoised.then(|| ("floe:denoised".into(), "Open Image Denoise".into())))
                 .collect(),
@@ -282,8 +333,22 @@ impl<'a> Session<'a> {
         Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
     }
 
+    /// The seconds after which a frame was cut, if it was.
+    fn cut_after(&self, of: Of<'_>) -> Option<f64> {
+        let budget = self.options.time_budget.filter(|_| of.stopped_by == Some(StoppedBy::Time))?;
+        Some(budget.as_secs_f64())
+    }
+
+    /// Why there are not more samples, where that can be told apart.
+    fn stopped(&self, of: Of<'_>) -> impl Iterator<Item = (&'static str, String)> {
+        let is_cut = of.stopped_by == Some(StoppedBy::Time);
+        let is_told = is_cut || self.settings.target_error.is_some();
+        of.stopped_by.filter(|_| is_told).map(|reason| ("stoppedBy", reason.name().to_owned())).into_iter()
+    }
+
     /// The settings that made the picture.
-    fn attributes(&self, number: FrameNumber, identity: &Identity) -> Vec<(String, String)> {
+    fn attributes(&self, of: Of<'_>) -> Vec<(String, String)> {
+        let Of { number, identity, .. } = of;
         let lanes = match self.job.world.mode {
             LaneMode::Rgb => "rgb",
             LaneMode::Spectral => "spectral",
@@ -302,13 +367,40 @@ impl<'a> Session<'a> {
         ]
         .into_iter()
         .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
+        .chain(
+            s.target_error.into_iter().flat_map(|error| {
+                [("targetError", error.to_string()), ("confidence", s.confidence.to_string())]
+            }),
+        )
+        .chain(self.stopped(of))
         .map(|(name, value)| (format!("floe:{name}"), value))
         .chain([
             (FINGERPRINT.into(), identity.fingerprint.to_string()),
             (MESH_HASH.into(), identity.mesh_hash.clone()),
         ])
+        .chain(self.cut_after(of).map(|seconds| (TIME_BUDGET.into(), seconds.to_string())))
         .collect()
     }
+}
+
+/// Which frame a picture is of, and why it has not more samples.
+#[derive(Clone, Copy)]
+struct Of<'a> {
+    number: FrameNumber,
+    identity: &'a Identity,
+    stopped_by: Option<StoppedBy>,
+}
+
+/// A frame that is drawn.
+struct Drawn {
+    image: FrameImage,
+    counters: Counters,
+    stopped_by: StoppedBy,
+    dropped: u64,
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.3} %", 100.0 * part)
 }
 
 fn describe(record: &mut FrameRecord, assembled: &Assembled) {

@@ -1,6 +1,7 @@
 //! Which frames are there already.
 
 use std::path::Path;
+use std::time::Duration;
 
 use rayon::prelude::*;
 
@@ -18,6 +19,8 @@ use crate::sequence::FrameNumber;
 pub enum FrameState {
     /// Its picture, whole.
     Complete,
+    /// Its picture, whole, of a frame whose time was up; with that time.
+    Cut(Duration),
     /// A checkpoint: rendering can go on.
     Partial,
     /// Nothing.
@@ -42,6 +45,7 @@ impl FrameState {
         };
         match PictureState::of(picture, &fingerprint) {
             PictureState::Complete => Self::Complete,
+            PictureState::Cut(time) => Self::Cut(time),
             _ if Checkpoint::of(picture, fingerprint).is_there() => Self::Partial,
             PictureState::Missing => Self::Missing,
             PictureState::Stale => Self::Stale,

@@ -157,9 +157,10 @@ fn with_workers(job: &Job, lookout: Lookout<'_>) -> Result<WatchReport, RenderEr
         observer.warning(&text);
     }
     let samples = settings.samples;
-    let previews = preview_samples(options.preview_samples, samples);
+    let previews = preview_samples(options.preview_samples, samples, settings.target_error.is_some());
     let finished_options = RenderOptions { samples: Some(samples), resume: true, ..options.render.clone() };
-    let preview_options = RenderOptions { samples: previews, ..options.render.clone() };
+    let preview_options =
+        RenderOptions { samples: previews, look: true, time_budget: None, ..options.render.clone() };
     let showcase = Showcase::default();
     let workshop = Workshop { job, pattern: &pattern, showcase: &showcase };
     let finishing = Tagged::new(observer, false);
@@ -182,9 +183,11 @@ fn shown(folder: &Path) -> String {
     whole.strip_prefix(&here).unwrap_or(&whole).display().to_string()
 }
 
-/// Samples of previews; none where they would not come much sooner than the picture.
-fn preview_samples(asked: Option<u32>, samples: u32) -> Option<u32> {
-    let preview = asked.unwrap_or_else(|| (samples / 16).max(4));
+/// Samples of previews; none where they would not come much sooner than the picture, which may have the fewest that a
+/// target allows.
+fn preview_samples(asked: Option<u32>, samples: u32, has_target: bool) -> Option<u32> {
+    let most = if has_target { 4 } else { u32::MAX };
+    let preview = asked.unwrap_or_else(|| (samples / 16).max(4).min(most));
     (preview > 0 && preview <= samples / 2).then_some(preview)
 }
 
@@ -240,7 +243,9 @@ mod tests {
             (Some(2), 4, Some(2)),
             (Some(40), 64, None),
         ] {
-            assert_eq!(preview_samples(asked, samples), preview, "{asked:?} of {samples}");
+            assert_eq!(preview_samples(asked, samples, false), preview, "{asked:?} of {samples}");
         }
+        assert_eq!(preview_samples(None, 4096, true), Some(4));
+        assert_eq!(preview_samples(Some(64), 4096, true), Some(64));
     }
 }

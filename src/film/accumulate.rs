@@ -23,10 +23,10 @@
 //!
 //! Sums are f64. A sample with a number that is not finite is left out and counted.
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::spectrum::luminance::luminance_f64;
+use super::sums::{Features, Replicate, filled, samples, sum_of_squares, variance_of_mean};
 
 /// Independent replicates of a pixel's samples.
 pub const REPLICATES: usize = crate::sampling::REPLICATES as usize;
@@ -71,7 +71,7 @@ impl FilmSample {
         }
     }
 
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         let always = self.radiance.is_finite()
             && self.alpha.is_finite()
             && self.albedo.is_finite()
@@ -142,24 +142,11 @@ impl Default for Pixel {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Replicate {
-    radiance: DVec3,
-    samples: u32,
-}
-
 /// Sums over the samples of one pixel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelAccumulator {
     replicates: [Replicate; REPLICATES],
-    alpha: f64,
-    albedo: DVec3,
-    normal: DVec3,
-    position: DVec3,
-    depth: f64,
-    motion: DVec2,
-    hits: u32,
-    rejected: u32,
+    features: Features,
 }
 
 impl PixelAccumulator {
@@ -172,81 +159,37 @@ impl PixelAccumulator {
     #[inline]
     pub fn add(&mut self, replicate: usize, sample: &FilmSample) {
         if !sample.is_finite() {
-            self.rejected += 1;
+            self.features.rejected += 1;
             return;
         }
-        let own = &mut self.replicates[replicate % REPLICATES];
-        own.radiance += sample.radiance.as_dvec3();
-        own.samples += 1;
-        self.alpha += f64::from(sample.alpha);
-        self.albedo += sample.albedo.as_dvec3();
-        self.normal += sample.normal.as_dvec3();
-        if sample.hit {
-            self.position += sample.position.as_dvec3();
-            self.depth += f64::from(sample.depth);
-            self.motion += sample.motion.as_dvec2();
-            self.hits += 1;
-        }
+        self.replicates[replicate % REPLICATES].add(sample);
+        self.features.add(sample);
     }
 
     /// Samples in the sums so far.
     pub fn samples(&self) -> u32 {
-        self.replicates.iter().map(|r| r.samples).sum()
+        samples(&self.replicates)
     }
 
     /// Means and variances of what was added.
     pub fn finish(&self) -> Pixel {
         let samples = self.samples();
         if samples == 0 {
-            return Pixel { rejected: self.rejected, ..Pixel::EMPTY };
+            return Pixel { rejected: self.features.rejected, ..Pixel::EMPTY };
         }
         let n = f64::from(samples);
         let mean = self.replicates.iter().map(|r| r.radiance).sum::<DVec3>() / n;
-        let (variance, deviations) = self.variance_of_mean(mean, n).unwrap_or_default();
-        let (position, depth) = match self.hits {
-            0 => (Vec3::ZERO, FAR_DEPTH),
-            hits => ((self.position / f64::from(hits)).as_vec3(), (self.depth / f64::from(hits)) as f32),
-        };
+        let (variance, deviations) = variance_of_mean(&self.replicates, mean, n).unwrap_or_default();
         Pixel {
             rgb: mean.as_vec3(),
-            alpha: (self.alpha / n) as f32,
-            albedo: (self.albedo / n).as_vec3(),
-            normal: (self.normal / n).as_vec3(),
-            position,
-            depth,
-            motion: (self.motion / f64::from(self.hits.max(1))).as_vec2(),
             // A square may leave the range of f32 where its root does not; infinite it would spoil every mean.
             variance: variance.as_vec3().min(Vec3::MAX),
-            luminance_variance: (deviations.iter().map(|d| d * d).sum::<f64>() as f32).min(f32::MAX),
+            luminance_variance: (sum_of_squares(deviations) as f32).min(f32::MAX),
             deviations: deviations.map(|d| d as f32),
             samples,
-            replicates: self.filled().count() as u32,
-            rejected: self.rejected,
+            replicates: filled(&self.replicates).count() as u32,
+            ..self.features.pixel(n)
         }
-    }
-
-    fn filled(&self) -> impl Iterator<Item = &Replicate> {
-        self.replicates.iter().filter(|r| r.samples > 0)
-    }
-
-    /// Equation (1) for each channel and (2) for luminance; `None` with fewer than two replicates.
-    fn variance_of_mean(&self, mean: DVec3, n: f64) -> Option<(DVec3, [f64; REPLICATES])> {
-        if self.filled().count() < 2 {
-            return None;
-        }
-        let (mut channels, mut luminance, mut squared_weights) = (DVec3::ZERO, [0.0; REPLICATES], 0.0);
-        for (replicate, luminance) in
-            self.replicates.iter().zip(&mut luminance).filter(|(r, _)| r.samples > 0)
-        {
-            let n_r = f64::from(replicate.samples);
-            let w = n_r / n;
-            let difference = w * (replicate.radiance / n_r - mean);
-            channels += difference * difference;
-            *luminance = luminance_f64(difference);
-            squared_weights += w * w;
-        }
-        let scale = 1.0 / (1.0 - squared_weights);
-        Some((channels * scale, luminance.map(|d| d * scale.sqrt())))
     }
 }
 

@@ -161,7 +161,7 @@ fn largest(errors: &mut [f64]) -> f64 {
 struct Sums {
     /// Of x.
     error: f64,
-    /// Of (R - 1) x.
+    /// Of (R - 1) x, or of as many degrees of freedom as a pixel has.
     freedom: f64,
     /// Of x Q / (L^2 + 0.02^2).
     vague: f64,
@@ -175,14 +175,16 @@ struct Sums {
 
 impl Sums {
     fn add(&mut self, pixel: &Pixel, error: f64, weight: f64, vague: f64) {
-        let replicates = f64::from(pixel.replicates);
-        self.error += error;
-        self.freedom += (replicates - 1.0) * error;
-        self.vague += error * vague.min(1.0);
-        let by_square = error * error * (replicates - 1.0) / (replicates + 1.0);
         let u = pixel.deviations.map(f64::from);
-        // A pixel that was put together in another way may not have them.
-        if (pixel.replicates as usize) < REPLICATES || u == [0.0; REPLICATES] {
+        let is_whole = pixel.replicates as usize == REPLICATES;
+        // A pixel of two halves, each with a mean of its own, has none.
+        let is_joined = is_whole && u == [0.0; REPLICATES];
+        let freedom = f64::from(pixel.replicates) - if is_joined { 2.0 } else { 1.0 };
+        self.error += error;
+        self.freedom += freedom * error;
+        self.vague += error * vague.min(1.0);
+        let by_square = error * error * freedom / (freedom + 2.0);
+        if !is_whole || is_joined {
             self.own += by_square;
             return;
         }

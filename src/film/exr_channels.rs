@@ -45,8 +45,10 @@ const VARIANCE: [Channel; 4] = [
     Channel { name: "variance.R", value: |p| p.variance.x },
     Channel { name: "variance.G", value: |p| p.variance.y },
     Channel { name: "variance.B", value: |p| p.variance.z },
-    Channel { name: "samples", value: |p| p.samples as f32 },
+    SAMPLES[0],
 ];
+
+const SAMPLES: [Channel; 1] = [Channel { name: "samples", value: |p| p.samples as f32 }];
 
 /// To the right and down, as pixels count.
 const MOTION: [Channel; 2] = [
@@ -62,20 +64,18 @@ fn layer(aov: Aov) -> &'static [Channel] {
         Aov::Depth => &DEPTH,
         Aov::Variance => &VARIANCE,
         Aov::Motion => &MOTION,
+        Aov::Samples => &SAMPLES,
     }
 }
 
 /// The channels of a file with these layers, in the format's order (by the bytes of their names).
 ///
-/// A layer that is asked for twice is there once.
+/// A channel that is asked for twice, by itself or with another layer, is there once.
 pub fn channels(aovs: &[Aov]) -> Vec<Channel> {
     let mut all = BEAUTY.to_vec();
-    for (i, &aov) in aovs.iter().enumerate() {
-        if !aovs[..i].contains(&aov) {
-            all.extend(layer(aov));
-        }
-    }
+    aovs.iter().for_each(|&aov| all.extend(layer(aov)));
     all.sort_by_key(|channel| channel.name);
+    all.dedup_by_key(|channel| channel.name);
     all
 }
 
@@ -98,7 +98,9 @@ mod tests {
             Aov::Normal,
             Aov::Albedo,
             Aov::Depth,
+            Aov::Samples,
         ]);
+        assert_eq!(names(&[Aov::Samples]), ["A", "B", "G", "R", "samples"]);
         let expected = "A B G N.X N.Y N.Z P.X P.Y P.Z R Z albedo.B albedo.G albedo.R motion.X motion.Y samples \
                         variance.B variance.G variance.R";
         assert_eq!(all.join(" "), expected);

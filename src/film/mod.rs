@@ -8,6 +8,7 @@
 //!
 //! * [`filter`] places the samples of a pixel so that each counts with weight one in its own pixel.
 //! * [`accumulate`] takes means in double precision and the variance of each mean from independent replicates.
+//! * [`halves`] keeps the two halves of a pixel's samples apart where one decides about the other.
 //! * [`frame_image`] cuts a frame into tiles and puts it together again; the order of the tiles has no influence.
 //! * [`estimate`] says how far a frame is from the converged picture, with a confidence interval.
 //! * [`denoise`](mod@denoise) takes the noise out of a copy, if that is asked for.
@@ -30,11 +31,13 @@ pub mod exr_read;
 pub mod exr_seal;
 pub mod filter;
 pub mod frame_image;
+pub mod halves;
 mod local_luminance;
 pub mod metadata;
 pub mod png;
 #[cfg(test)]
 mod splitmix;
+mod sums;
 pub mod tonemap;
 mod variance_ratio;
 pub mod write;
@@ -46,5 +49,8 @@ pub use error::FilmError;
 pub use estimate::{DEFAULT_CONFIDENCE, ErrorEstimate, LUMINANCE_FLOOR, estimate_error};
 pub use filter::Filter;
 pub use frame_image::{FrameImage, Tile, TileRect, tiles};
+pub use halves::{HALVES, HalfSums, joined};
 pub use metadata::ImageMetadata;
+#[cfg(test)]
+pub(crate) use splitmix::SplitMix;
 pub use write_frame::{png_bytes, write_frame, write_png_of};

@@ -63,7 +63,12 @@ pub fn study_seed_modes(
         return Err(StudyError::TooFewFrames { found: tasks.len(), least: WINDOW });
     }
     let scene = &job.world.description.render;
-    let scene = &RenderDescription { samples: study.samples.unwrap_or(scene.samples), ..scene.clone() };
+    let scene = &RenderDescription {
+        samples: study.samples.unwrap_or(scene.samples),
+        // Modes are compared at the same number of samples.
+        target_error: None,
+        ..scene.clone()
+    };
     let seed = study.seed.unwrap_or(scene.seed);
     let [width, height] = job.world.description.camera.resolution.map(|n| n as usize);
     let tone_map = ToneMap::new(job.world.description.output.exposure);

@@ -12,6 +12,7 @@ mod preview;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
+mod stopping;
 mod study;
 
 use std::path::Path;
@@ -147,8 +148,13 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "relative_error",
         "render_seconds",
         "samples",
+        "samples_dropped",
+        "samples_per_pixel",
         "shadow_rays",
         "status",
+        "stopped_by",
+        "target_error",
+        "time_budget",
         "trapped",
         "triangles",
         "untraced",

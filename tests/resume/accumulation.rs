@@ -2,9 +2,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use floe::driver::Job;
 use floe::driver::accumulation::Accumulation;
 use floe::driver::tiles::{Control, Sampling, accumulate, render_pixels};
+use floe::driver::{Job, StoppedBy};
+use floe::scene::frame::Frame;
 
 use super::command::{boxes, edit};
 use super::numbers::Numbers;
@@ -32,12 +33,14 @@ impl Control for Impatient {
 }
 
 /// Wants a save whenever it is asked, and stops where saves come without a pixel between them.
-struct Restless(AtomicU64);
+struct Restless {
+    saves: AtomicU64,
+    most: u64,
+}
 
 impl Control for Restless {
     fn stops(&self) -> bool {
-        // More than there are pixels.
-        self.0.load(Ordering::Relaxed) > 37 * 19
+        self.saves.load(Ordering::Relaxed) > self.most
     }
 
     fn wants_save(&self) -> bool {
@@ -45,23 +48,48 @@ impl Control for Restless {
     }
 
     fn save(&self, _: &Accumulation) {
-        self.0.fetch_add(1, Ordering::Relaxed);
+        self.saves.fetch_add(1, Ordering::Relaxed);
     }
 }
 
-fn check(integrator: &str, seed: u64) {
+/// Has all the time that it takes.
+struct Unhurried;
+
+impl Control for Unhurried {}
+
+/// Has no time but for one round.
+struct Hasty;
+
+impl Control for Hasty {
+    fn seconds_left(&self) -> Option<f64> {
+        Some(0.0)
+    }
+}
+
+/// A frame of 37 x 19 pixels, and how it is sampled.
+fn small(integrator: &str, more: &str) -> (Frame, Sampling) {
     let folder = boxes(1, "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n");
     edit(&folder, "resolution = [16, 9]", "resolution = [37, 19]");
     let photons = "photons = { count = 60 }";
-    edit(&folder, "samples = 4", &format!("samples = 4\nintegrator = \"{integrator}\"\n{photons}"));
+    let render = format!("{more}\nintegrator = \"{integrator}\"\n{photons}");
+    edit(&folder, "samples = 4", &render);
     let job = Job::open(&folder.path("boxes/scene.toml")).unwrap();
     let task = &job.tasks()[0];
     let frame = job.world.assemble(task.number, task.read(&job.world).unwrap().meshes, None).unwrap().frame;
-    let sampling = Sampling::new(&job.world.description.render);
+    (frame, Sampling::new(&job.world.description.render))
+}
+
+fn check(integrator: &str, more: &str, rungs: u64, seed: u64) {
+    let (frame, sampling) = small(integrator, more);
     let alone = render_pixels(&frame, &sampling, &|_, _| ());
     let mut restless = Accumulation::new(frame.views.opening.resolution());
-    let ends = accumulate(&mut restless, &frame, &sampling, &Restless(AtomicU64::new(0)));
-    assert!(ends && restless.finish() == alone, "{integrator} with saves all the time");
+    let ends = accumulate(
+        &mut restless,
+        &frame,
+        &sampling,
+        &Restless { saves: AtomicU64::new(0), most: 37 * 19 * rungs },
+    );
+    assert!(ends.is_some() && restless.finish() == alone, "{integrator} with saves all the time");
     let (mut numbers, mut stops) = (Numbers(seed), 0);
     for threads in [1, 1, 2, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -69,7 +97,7 @@ fn check(integrator: &str, seed: u64) {
         loop {
             let control =
                 Impatient { left: AtomicU64::new(1 + numbers.below(400)), rests: 2 + numbers.below(100) };
-            if pool.install(|| accumulate(&mut accumulation, &frame, &sampling, &control)) {
+            if pool.install(|| accumulate(&mut accumulation, &frame, &sampling, &control)).is_some() {
                 break;
             }
             // What is there when it stops is all that a run has which goes on from a checkpoint.
@@ -84,10 +112,51 @@ fn check(integrator: &str, seed: u64) {
 
 #[test]
 fn path_tracing_may_stop_between_any_two_samples() {
-    check("path", 3);
+    check("path", "samples = 4", 1, 3);
 }
 
 #[test]
 fn photon_mapping_may_stop_between_any_two_samples() {
-    check("photon", 4);
+    check("photon", "samples = 4", 1, 4);
+}
+
+/// Each pixel has a rest after every rung: 16, 24, 32, 48, 64 samples.
+#[test]
+fn halves_may_stop_between_any_two_samples() {
+    check("path", "samples = 64\ntarget_error = 0.006", 5, 5);
+}
+
+#[test]
+fn photon_passes_with_a_target_may_stop_too() {
+    check("photon", "samples = 24\ntarget_error = 0.1", 1, 6);
+}
+
+/// What has no time left has a round more each time that it goes on; where pixels were begun one after the other before,
+/// they are gone on with so.
+#[test]
+fn rounds_under_a_time_budget_end_as_the_same_bits() {
+    for more in ["samples = 30", "samples = 64\ntarget_error = 0.004"] {
+        let (frame, sampling) = small("path", more);
+        let alone = render_pixels(&frame, &sampling, &|_, _| ());
+        for questions in [0, 300] {
+            let mut accumulation = Accumulation::new(frame.views.opening.resolution());
+            if questions > 0 {
+                let control = Impatient { left: AtomicU64::new(questions), rests: 1 << 40 };
+                assert_eq!(accumulate(&mut accumulation, &frame, &sampling, &control), None);
+            }
+            let mut cuts = 0;
+            while accumulate(&mut accumulation, &frame, &sampling, &Hasty) == Some(StoppedBy::Time) {
+                cuts += 1;
+                let (image, _) = accumulation.clone().finish();
+                assert!(image.pixels.iter().all(|pixel| pixel.samples >= 4), "a round at least");
+                // With a target no round is begun when no time is left.
+                if sampling.target.is_some() {
+                    break;
+                }
+            }
+            assert!(cuts > 0);
+            assert!(accumulate(&mut accumulation, &frame, &sampling, &Unhurried).is_some());
+            assert!(accumulation.finish() == alone, "{more} after {questions} questions");
+        }
+    }
 }

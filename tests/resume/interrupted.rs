@@ -14,11 +14,11 @@ use super::small::Folder;
 const OFTEN: [&str; 4] = ["render", "boxes", "--checkpoint-every", "0.02"];
 
 /// Three frames that take some tenths of a second each.
-fn lengthy(integrator: &str, samples: u32) -> Folder {
+pub fn lengthy(integrator: &str, samples: u32, more: &str) -> Folder {
     let camera =
         "[camera]\neye = [0.4, -4, 0.9]\ntarget = [0, 0, 0]\nvertical_fov = 40\nresolution = [40, 30]\n";
     let render = format!(
-        "[render]\nsamples = {samples}\nintegrator = \"{integrator}\"\nphotons = {{ count = 4000 }}\n"
+        "[render]\nsamples = {samples}\nintegrator = \"{integrator}\"\nphotons = {{ count = 4000 }}\n{more}\n"
     );
     boxes(3, &format!("{camera}{render}[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n"))
 }
@@ -26,7 +26,17 @@ fn lengthy(integrator: &str, samples: u32) -> Folder {
 /// What the ledger counts of each frame, in its last line.
 fn counts(folder: &Folder) -> BTreeMap<String, String> {
     let lines = folder.ledger("out/boxes/ledger.jsonl");
-    let keys = ["status", "rays", "shadow_rays", "photons", "untraced", "samples", "relative_error"];
+    let keys = [
+        "status",
+        "rays",
+        "shadow_rays",
+        "photons",
+        "untraced",
+        "samples",
+        "samples_dropped",
+        "stopped_by",
+        "relative_error",
+    ];
     let counts = |line: &serde_json::Value| keys.map(|key| format!("{key} {}", line[key])).join(", ");
     lines.iter().map(|line| (line["frame"].as_str().unwrap().to_owned(), counts(line))).collect()
 }
@@ -39,14 +49,14 @@ fn send(child: &Child, signal: &str) {
 
 /// Breaks runs off until one has come to its end, then compares everything with a run that was left alone, and begins
 /// anew, so many times in all. Returns how many of the runs left a checkpoint.
-fn broken_off(integrator: &str, samples: u32, times: u32, seed: u64) -> u32 {
-    let alone = lengthy(integrator, samples);
+fn broken_off(integrator: &str, samples: u32, more: &str, times: u32, seed: u64) -> u32 {
+    let alone = lengthy(integrator, samples, more);
     let start = Instant::now();
     floe(&alone, &["render", "boxes"]).ended(0);
     let whole = start.elapsed().as_millis() as u64;
     let (mut numbers, mut broken, mut kept) = (Numbers(seed), 0, 0);
     while broken < times {
-        let folder = lengthy(integrator, samples);
+        let folder = lengthy(integrator, samples, more);
         while broken < times {
             let threads = ["1", "2"][numbers.below(2) as usize];
             let mut child = command(&folder, &[&OFTEN[..], &["--resume", "--threads", threads]].concat())
@@ -81,12 +91,18 @@ fn broken_off(integrator: &str, samples: u32, times: u32, seed: u64) -> u32 {
 
 #[test]
 fn frames_that_were_broken_off_end_as_the_same_bytes() {
-    broken_off("path", 64, 8, 1);
+    broken_off("path", 64, "", 8, 1);
 }
 
 #[test]
 fn photon_passes_that_were_broken_off_end_as_the_same_bytes() {
-    broken_off("photon", 24, 8, 2);
+    broken_off("photon", 24, "", 8, 2);
+}
+
+#[test]
+fn frames_with_a_target_that_were_broken_off_end_as_the_same_bytes() {
+    broken_off("path", 256, "target_error = 0.004", 8, 3);
+    broken_off("photon", 48, "target_error = 0.032", 4, 4);
 }
 
 #[test]
@@ -94,7 +110,7 @@ fn photon_passes_that_were_broken_off_end_as_the_same_bytes() {
 fn a_hundred_runs_that_were_broken_off_end_as_the_same_bytes() {
     for (integrator, samples, seed) in [("path", 96, 11), ("photon", 32, 12)] {
         let start = Instant::now();
-        let kept = broken_off(integrator, samples, 50, seed);
+        let kept = broken_off(integrator, samples, "", 50, seed);
         println!("{integrator}: 50 runs, {kept} left a checkpoint, {:.1} s", start.elapsed().as_secs_f64());
         assert!(kept >= 10, "too few went on in the middle of a frame");
     }
@@ -102,7 +118,7 @@ fn a_hundred_runs_that_were_broken_off_end_as_the_same_bytes() {
 
 /// Runs a frame of a hundred thousand samples, waits until it is well begun, and ends it by a signal.
 fn ended_by(signal: &str, integrator: &str) -> (Folder, Duration) {
-    let folder = lengthy(integrator, 100_000);
+    let folder = lengthy(integrator, 100_000, "");
     let mut child = command(&folder, &["render", "boxes", "--frames", "2"]).spawn().unwrap();
     // The ledger is made before anything is rendered.
     while !folder.path("out/boxes/ledger.jsonl").exists() {
@@ -148,7 +164,7 @@ fn a_checkpoint_of_other_settings_is_named_and_removed() {
 
 #[test]
 fn usr1_saves_and_goes_on() {
-    let folder = lengthy("path", 2000);
+    let folder = lengthy("path", 2000, "");
     let mut child = command(&folder, &["render", "boxes", "--frames", "1"]).spawn().unwrap();
     let checkpoint = folder.path("out/boxes/.frame_0001.checkpoint");
     while !checkpoint.exists() {
@@ -168,9 +184,9 @@ fn usr1_saves_and_goes_on() {
 
 #[test]
 fn two_workers_on_one_folder_do_no_harm() {
-    let alone = lengthy("path", 32);
+    let alone = lengthy("path", 32, "");
     floe(&alone, &["render", "boxes"]).ended(0);
-    let folder = lengthy("path", 32);
+    let folder = lengthy("path", 32, "");
     let workers = [(); 2].map(|()| command(&folder, &[&OFTEN[..], &["--resume"]].concat()).spawn().unwrap());
     for worker in workers {
         let output = worker.wait_with_output().unwrap();

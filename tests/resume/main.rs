@@ -12,3 +12,5 @@ mod runs;
 #[path = "../small/mod.rs"]
 mod small;
 mod status;
+#[cfg(unix)]
+mod stopping;

@@ -4,6 +4,7 @@
 //! do not. To draw without motion what is there with it would undo the other's work.
 
 use std::path::Path;
+use std::time::Duration;
 
 use crate::driver::fingerprint::{Fingerprints, FrameSource, Identity};
 use crate::driver::job::{FrameTask, NextFrame};
@@ -20,13 +21,15 @@ pub(super) struct Sought<'a> {
     pub identity: &'a Identity,
     /// The frame after it and its mesh, if it is there.
     pub next: Option<(FrameNumber, &'a Path)>,
+    /// What a frame may take.
+    pub time_budget: Option<Duration>,
 }
 
 impl Sought<'_> {
     /// Whether a picture is that of the frame.
     pub fn is_drawn(&self, world: &World, fingerprints: &Fingerprints, picture: &Path) -> bool {
         match PictureState::of(picture, &self.identity.fingerprint) {
-            PictureState::Complete => true,
+            state @ (PictureState::Complete | PictureState::Cut(_)) => state.is_enough(self.time_budget),
             PictureState::Stale => world.follows_vertices() && self.moves(world, fingerprints, picture),
             PictureState::Missing | PictureState::Corrupt(_) => false,
         }

@@ -209,7 +209,8 @@ impl<'a> Watch<'a> {
             Some((_, Some(known))) => known == identity.fingerprint,
             Some((path, None)) => {
                 let next = arrivals.after(number).map(|(next, arrival)| (next, arrival.path.as_path()));
-                let frame = Sought { number, path, identity, next };
+                let time_budget = self.lookout.options.render.time_budget;
+                let frame = Sought { number, path, identity, next, time_budget };
                 frame.is_drawn(&self.job.world, &self.fingerprints, &picture_path(self.pattern, number))
             }
         }

@@ -16,6 +16,11 @@ impl Allowed {
     pub const POSITIVE: Self = Self::open(0.0, f64::INFINITY, "a number above 0");
     /// 0 or above.
     pub const NOT_NEGATIVE: Self = Self::closed(0.0, f64::MAX, "a number that is not below 0");
+    /// A relative error to stop at.
+    pub const TARGET_ERROR: Self =
+        Self::closed(1e-6, 1.0, "a relative error from 0.000001 to 1, such as 0.02 for 2 %");
+    /// The confidence of an interval.
+    pub const CONFIDENCE: Self = Self::closed(0.5, 0.9999, "a confidence from 0.5 to 0.9999");
     /// A length in metres.
     pub const LENGTH: Self = Self::closed(1e-9, 1e9, "a length from 1e-9 to 1e9 metres");
     /// alpha of progressive photon mapping.

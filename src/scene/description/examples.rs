@@ -79,6 +79,8 @@ resolution = [640, 360]
 [render]
 integrator = "auto"
 samples = 64
+target_error = 0.02
+confidence = 0.9
 max_depth = 0
 split = 1
 similarity = 2
@@ -91,7 +93,7 @@ path = "out/frame_####.exr"
 png = true
 exposure = 0.5
 denoise = true
-aovs = ["albedo", "N", "P", "Z", "motion", "variance"]
+aovs = ["albedo", "N", "P", "Z", "motion", "variance", "samples"]
 "#;
 
 const SPECTRAL: &str = r#"

@@ -320,8 +320,12 @@ pub enum SkyDescription {
 pub struct RenderDescription {
     /// Which integrator (auto).
     pub integrator: IntegratorKind,
-    /// Samples a pixel (64).
+    /// Samples a pixel, at most where there is a target (64).
     pub samples: u32,
+    /// Relative error at which a frame stops; `None` gives every pixel all samples.
+    pub target_error: Option<f64>,
+    /// Confidence of the intervals of estimated errors (0.95).
+    pub confidence: f64,
     /// Interactions along a path; 0 is no limit (0).
     pub max_depth: u32,
     /// Both branches are followed on the first `split` interface hits (1).
@@ -460,4 +464,6 @@ pub enum Aov {
     Variance,
     /// Where the first surface goes until the next frame, in pixels.
     Motion,
+    /// Samples in the pixel's mean.
+    Samples,
 }

@@ -11,13 +11,14 @@ impl Default for OutputDescription {
     }
 }
 
-const AOVS: [(&str, Aov); 6] = [
+const AOVS: [(&str, Aov); 7] = [
     ("albedo", Aov::Albedo),
     ("N", Aov::Normal),
     ("P", Aov::Position),
     ("Z", Aov::Depth),
     ("variance", Aov::Variance),
     ("motion", Aov::Motion),
+    ("samples", Aov::Samples),
 ];
 
 /// Reads `[output]`.

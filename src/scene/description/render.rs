@@ -11,6 +11,8 @@ impl Default for RenderDescription {
         Self {
             integrator: IntegratorKind::Auto,
             samples: 64,
+            target_error: None,
+            confidence: 0.95,
             max_depth: 0,
             split: 1,
             forced_scattering: 0,
@@ -75,6 +77,10 @@ pub(super) fn read(value: &Value<'_>) -> Result<RenderDescription, SceneError> {
     let render = RenderDescription {
         integrator: table.get("integrator").map_or(Ok(default.integrator), |v| v.choice(&INTEGRATORS))?,
         samples: whole("samples", 1, u32::MAX.into(), default.samples)?,
+        target_error: table.get("target_error").map(|v| v.number(&Allowed::TARGET_ERROR)).transpose()?,
+        confidence: table
+            .get("confidence")
+            .map_or(Ok(default.confidence), |v| v.number(&Allowed::CONFIDENCE))?,
         max_depth: whole("max_depth", 0, u32::MAX.into(), default.max_depth)?,
         split: whole("split", 0, MOST_SPLITS, default.split)?,
         forced_scattering: whole("forced_scattering", 0, MOST_SPLITS, default.forced_scattering)?,
