@@ -7,7 +7,7 @@ use crate::driver::error::Blame;
 
 /// The end of the help text.
 pub(super) const HELP: &str = "\
-Exit codes: 0 all is there, 2 usage, 65 bad input data, 66 input missing, 70 internal error,
+Exit codes: 0 all is there, 1 pictures differ, 2 usage, 65 bad input data, 66 input missing, 70 internal error,
 73 cannot create or 74 cannot write an output, 75 interrupted (run it again with --resume),
 78 bad scene file; the greatest of several.";
 
@@ -17,6 +17,8 @@ Exit codes: 0 all is there, 2 usage, 65 bad input data, 66 input missing, 70 int
 pub enum Exit {
     /// Everything that was asked for is there.
     Complete = 0,
+    /// Pictures differ from their references.
+    Different = 1,
     /// The command line is wrong.
     Usage = 2,
     /// An input file is bad.

@@ -1,5 +1,6 @@
 //! The command line: one file a command. Results go to standard output, progress to standard error.
 
+mod compare;
 mod duration;
 mod encode;
 mod exit;
@@ -48,6 +49,8 @@ enum Command {
     Encode(encode::EncodeArguments),
     /// Render frames in several ways and measure how they differ
     Study(study::StudyArguments),
+    /// Compare pictures with reference pictures, and say whether they differ by more than noise
+    Compare(compare::CompareArguments),
 }
 
 /// Runs the command that the process was started with.
@@ -65,6 +68,7 @@ fn dispatch() -> Exit {
             Command::Info(arguments) => info::run(&arguments),
             Command::Encode(arguments) => encode::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
+            Command::Compare(arguments) => compare::run(&arguments),
         },
         Err(error) => {
             // Help and version go to standard output and are no failure.

@@ -25,6 +25,7 @@ pub mod estimate;
 pub mod exr;
 mod exr_channels;
 mod exr_header;
+pub mod exr_layers;
 pub mod exr_read;
 pub mod exr_seal;
 pub mod filter;

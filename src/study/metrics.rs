@@ -15,7 +15,7 @@
 //! that a difference that all channels of a grey pixel share counts as it does in one of them. The floor keeps black
 //! pixels from counting without limit; it is that of [`crate::film::estimate`]. (3) is robust against single fireflies,
 //! (4) against any that are fewer than half of the pixels, and blind for light that is missing in fewer. (6) has a sign:
-//! its mean tells a bias from noise, which cancels.
+//! its mean tells a bias from the noise of I, which cancels; that of R, of variance V, raises it by about V / r^2.
 //!
 //! Pixels with numbers that are not finite have such errors too: leave them out before.
 

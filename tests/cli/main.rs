@@ -1,6 +1,7 @@
 //! The command as a user meets it: run as a process, in folders of its own.
 #![allow(clippy::unwrap_used)]
 
+mod compare;
 mod encode;
 mod folders;
 mod integrators;
