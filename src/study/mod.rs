@@ -1,6 +1,7 @@
 //! Finds out how well pictures are made: renders the same frames in several ways and compares.
 //!
 //! * [`compare`] compares pictures that are there with others.
+//! * [`convergence`] measures errors against run time, by means of [`statistics`].
 //! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
 //! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
 //! * [`flip`](mod@flip) says how different two pictures look.
@@ -12,16 +13,19 @@
 #![doc = include_str!("temporal.md")]
 
 pub mod compare;
+pub mod convergence;
 pub mod distributions;
 pub mod error;
 pub mod flip;
 pub mod metrics;
 pub mod plot;
 pub mod seed_modes;
+pub mod statistics;
 pub mod table;
 pub mod temporal;
 pub mod z_test;
 
+pub use convergence::{ConvergenceResults, ConvergenceStudy, study_convergence};
 pub use error::StudyError;
 pub use seed_modes::{SeedModeStudy, TemporalStudy, study_seed_modes};
 pub use temporal::{TemporalErrors, TemporalMetrics};

@@ -1,7 +1,8 @@
 //! `floe study`: one file a mode. A mode is chosen by its flag, which belongs to the group `mode`; without one it is the
 //! study of convergence.
 //!
-//! Options of one mode stand in its file, in a group that `requires` its flag; those of several stand here, and what a
+//! Options of one mode stand in its file, in a group that `requires` its flag (those of convergence, which has none,
+//! conflict with `mode`); those of several stand here, and what a
 //! mode has no use for it `conflicts_with`.
 
 mod convergence;
@@ -25,6 +26,8 @@ pub struct StudyArguments {
     #[command(flatten)]
     shared: Shared,
     #[command(flatten)]
+    convergence: convergence::ConvergenceArguments,
+    #[command(flatten)]
     temporal: temporal::TemporalArguments,
 }
 
@@ -40,7 +43,7 @@ struct Shared {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Write the results here too: with --temporal a file that ends with .csv or .json
+    /// The folder of the results [default: out/study/NAME]; with --temporal a file that ends with .csv or .json
     #[arg(long, short, value_name = "PATH")]
     output: Option<PathBuf>,
     /// Only errors and the results
@@ -50,15 +53,16 @@ struct Shared {
 
 /// Renders, measures and prints.
 pub fn run(arguments: &StudyArguments) -> Exit {
-    let StudyArguments { scene, shared, temporal } = arguments;
+    let StudyArguments { scene, shared, convergence, temporal } = arguments;
     let result = match () {
         () if temporal.is_asked_for() => temporal::run(scene, shared, temporal),
-        () => convergence::run(scene, shared),
+        () => convergence::run(scene, shared, convergence),
     };
     result.unwrap_or_else(|error| {
         say(&format!("error: {error}"));
         match error {
             StudyError::Render(error) => Exit::from(&error),
+            StudyError::Reference { .. } => Exit::BadData,
             _ => Exit::Usage,
         }
     })
