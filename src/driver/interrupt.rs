@@ -38,7 +38,7 @@ impl Interrupt {
     }
 
     /// Does what a process that must end soon had better wait for.
-    pub(super) fn while_writing<T>(&self, work: impl FnOnce() -> T) -> T {
+    pub fn while_writing<T>(&self, work: impl FnOnce() -> T) -> T {
         self.writers.fetch_add(1, Ordering::SeqCst);
         let result = work();
         self.writers.fetch_sub(1, Ordering::SeqCst);

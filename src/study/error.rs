@@ -46,4 +46,23 @@ pub enum StudyError {
         /// As it was given.
         file: PathBuf,
     },
+    /// The picture that was given as a reference is none.
+    #[error("{file}: {reason}", file = file.display())]
+    Reference {
+        /// The picture.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A setting that is not one of a series.
+    #[error("`{text}` sets samples or the seed: these are --budgets and --seed")]
+    NotASetting {
+        /// The settings.
+        text: String,
+    },
+    /// Time was up before anything was measured.
+    #[error(
+        "time was up before the reference was done: give more --time, fewer --reference-samples, or a --reference"
+    )]
+    NoTime,
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod compare;
+mod convergence;
 mod encode;
 mod folders;
 mod half_spaces;

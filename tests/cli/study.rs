@@ -49,7 +49,6 @@ fn studies_that_cannot_be_made_say_why() {
         .says(&["frame 9", "1-3"]);
     floe(&folder, &[&study[..], &["--hold", "1"]].concat()).ended(2).says(&["--frames 1-16"]);
     floe(&folder, &[&study[..], &["--output", "a.txt"]].concat()).ended(2).says(&[".csv or .json"]);
-    floe(&folder, &["study", "boxes"]).ended(2).says(&["--temporal"]);
     floe(&folder, &["study", "nowhere", "--temporal"]).ended(66).says(&["nowhere"]);
 }
 
@@ -59,6 +58,11 @@ fn options_of_another_mode_are_refused_by_name() {
     for (more, words) in [
         (&["--hold", "1"][..], &["--temporal"][..]),
         (&["--temporal", "--frame", "1"], &["--frame <N>", "--temporal"]),
+        (&["--temporal", "--budgets", "4"], &["--budgets <N>", "--temporal"]),
+        (&["--repeats", "1"], &["--repeats <N>"]),
+        (&["--budgets", "8-4"], &["--budgets <N>", "4-256"]),
+        (&["--resolution", "8"], &["160x90"]),
+        (&["--error", "0"], &["above 0"]),
     ] {
         floe(&folder, &[&["study", "boxes"][..], more].concat()).ended(2).says(words);
     }

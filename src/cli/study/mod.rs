@@ -1,7 +1,8 @@
 //! `floe study`: one file a mode. A mode is chosen by its flag, which belongs to the group `mode`; without one it is the
 //! study of convergence.
 //!
-//! Options of one mode stand in its file, in a group that `requires` its flag; those of several stand here, and what a
+//! Options of one mode stand in its file, in a group that `requires` its flag (those of convergence, which has none,
+//! conflict with `mode`); those of several stand here, and what a
 //! mode has no use for it `conflicts_with`.
 
 mod convergence;
@@ -27,6 +28,8 @@ pub struct StudyArguments {
     #[command(flatten)]
     shared: Shared,
     #[command(flatten)]
+    convergence: convergence::ConvergenceArguments,
+    #[command(flatten)]
     temporal: temporal::TemporalArguments,
     #[command(flatten)]
     stability: stability::StabilityArguments,
@@ -44,7 +47,8 @@ struct Shared {
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Write the results here too: with --temporal a file that ends with .csv or .json, with --stability a folder
+    /// The folder of the results [default: out/study/NAME; with --stability none]; with --temporal a file that ends with
+    /// .csv or .json
     #[arg(long, short, value_name = "PATH")]
     output: Option<PathBuf>,
     /// Only errors and the results
@@ -54,16 +58,17 @@ struct Shared {
 
 /// Renders, measures and prints.
 pub fn run(arguments: &StudyArguments) -> Exit {
-    let StudyArguments { scene, shared, temporal, stability } = arguments;
+    let StudyArguments { scene, shared, convergence, temporal, stability } = arguments;
     let result = match scene {
         None => Ok(stability::run(shared, stability)),
         Some(scene) if temporal.is_asked_for() => temporal::run(scene, shared, temporal),
-        Some(scene) => convergence::run(scene, shared),
+        Some(scene) => convergence::run(scene, shared, convergence),
     };
     result.unwrap_or_else(|error| {
         say(&format!("error: {error}"));
         match error {
             StudyError::Render(error) => Exit::from(&error),
+            StudyError::Reference { .. } => Exit::BadData,
             _ => Exit::Usage,
         }
     })

@@ -109,9 +109,7 @@ impl PhotonMapper {
     /// Finds out how photons are emitted in a frame and how wide they are spread.
     pub fn prepare(&self, frame: &Frame, seed: SampleSeed) -> PhotonFrame {
         let [width, height] = frame.views.opening.resolution();
-        let pixels = width.saturating_mul(height).clamp(10_000, 1_000_000);
-        // At least one for each kind of light.
-        let count = if self.settings.count == 0 { pixels } else { self.settings.count.max(3) };
+        let count = self.settings.count_of(width.saturating_mul(height));
         let sky = self.carries_sky(&frame.needs);
         let takes = (frame.needs.diffuse || frame.needs.scattering) && !frame.needs.turbid_air;
         let emission = Some(Emission::new(frame, sky)).filter(|e| takes && e.is_possible());

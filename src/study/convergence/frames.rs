@@ -1,0 +1,125 @@
+//! The frame as each series needs it: mostly one for all.
+
+use super::ConvergenceStudy;
+use crate::driver::fingerprint::{Fingerprint, Fingerprints, FrameSource, Parsed};
+use crate::driver::job::FrameTask;
+use crate::driver::{Job, RenderError};
+use crate::film::ImageMetadata;
+use crate::integrator::Integrator;
+use crate::scene::assembly::Buffers;
+use crate::scene::description::{IntegratorKind, RenderDescription};
+use crate::scene::frame::Frame;
+use crate::sequence::{FrameNumber, FrameSelection};
+use crate::study::error::StudyError;
+
+/// The frame of a study, assembled for some settings.
+pub(super) struct Frames<'a> {
+    study: &'a ConvergenceStudy,
+    job: Job,
+    task: FrameTask,
+    assembled: Vec<(RenderDescription, Frame)>,
+}
+
+impl<'a> Frames<'a> {
+    /// Opens the scene and assembles the frame as the scene says.
+    pub fn open(study: &'a ConvergenceStudy) -> Result<Self, StudyError> {
+        let job = open(study, None)?;
+        let task = task(&job, study.frame)?;
+        let render = job.world.description.render.clone();
+        let frame = assemble(&job, &task)?;
+        Ok(Self { study, job, task, assembled: vec![(render, frame)] })
+    }
+
+    /// Assembles the frame for other settings, unless there is one that serves.
+    pub fn prepare(&mut self, render: &RenderDescription) -> Result<(), StudyError> {
+        if self.of(render).is_none() {
+            let frame = assemble(&open(self.study, Some(render))?, &self.task)?;
+            self.assembled.push((render.clone(), frame));
+        }
+        Ok(())
+    }
+
+    /// The frame for some settings, if it is prepared.
+    pub fn of(&self, render: &RenderDescription) -> Option<&Frame> {
+        self.assembled.iter().find(|(other, _)| other.share_frames(render)).map(|(_, frame)| frame)
+    }
+
+    /// The frame as the scene says.
+    pub fn base(&self) -> &Frame {
+        &self.assembled[0].1
+    }
+
+    /// What the scene says.
+    pub fn settings(&self) -> &RenderDescription {
+        &self.job.world.description.render
+    }
+
+    pub fn name(&self) -> &str {
+        &self.job.name
+    }
+
+    pub fn number(&self) -> FrameNumber {
+        self.task.number
+    }
+
+    /// What the reference is rendered by, and another way that leaves nothing out either, where there is one: paths, which
+    /// have no bias, unless they leave something out, and photons, finer than the scene's.
+    pub fn estimators(&self, samples: u32, seed: u64) -> (RenderDescription, Option<RenderDescription>) {
+        let needs = &self.base().needs;
+        let [width, height] = self.base().views.opening.resolution();
+        let photons = self.settings().photons.finer(width.saturating_mul(height));
+        let exact = RenderDescription { samples, seed, similarity: 0, photons, ..self.settings().clone() };
+        let by = |integrator| RenderDescription { integrator, ..exact.clone() };
+        let (path, photon) = (by(IntegratorKind::Path), by(IntegratorKind::Photon));
+        let photons_differ = !needs.turbid_air && (needs.diffuse || needs.scattering);
+        match (Integrator::new(&path).left_out(needs).is_empty(), photons_differ) {
+            (true, true) => (path, Some(photon)),
+            (true, false) => (path, None),
+            (false, _) => (photon, None),
+        }
+    }
+
+    /// What a picture of the frame with some settings depends on.
+    pub fn identity(&self, render: &RenderDescription) -> Result<Fingerprint, StudyError> {
+        let world = &self.job.world;
+        let fingerprints = Fingerprints::new(world, render);
+        Ok(FrameSource::read(world, &fingerprints, &self.task)?.identity.fingerprint)
+    }
+
+    pub fn metadata(&self) -> ImageMetadata {
+        let (world, camera) = (&self.job.world, &self.base().views.opening);
+        ImageMetadata {
+            frame_number: self.task.number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
+            fps: world.fps(),
+            world_to_camera: camera.world_to_camera(world.origin),
+            world_to_ndc: camera.world_to_ndc(world.origin),
+            attributes: Vec::new(),
+        }
+    }
+}
+
+fn open(study: &ConvergenceStudy, render: Option<&RenderDescription>) -> Result<Job, RenderError> {
+    Job::open_changed(&study.scene, |scene| {
+        scene.camera.resolution = study.resolution.unwrap_or(scene.camera.resolution);
+        scene.render = render.unwrap_or(&scene.render).clone();
+    })
+}
+
+fn task(job: &Job, number: Option<FrameNumber>) -> Result<FrameTask, RenderError> {
+    let tasks = match number {
+        Some(number) => job.select(&FrameSelection::parse(&number.to_string())?)?,
+        None => job.tasks(),
+    };
+    // A job without frames is refused where it is opened.
+    Ok(tasks.into_iter().next().unwrap_or(FrameTask {
+        number: FrameNumber::ONE,
+        files: Vec::new(),
+        next: None,
+    }))
+}
+
+fn assemble(job: &Job, task: &FrameTask) -> Result<Frame, RenderError> {
+    let Parsed { meshes, inputs, .. } = task.read(&job.world)?;
+    let assembled = job.world.assemble_into(Buffers::default(), task.number, meshes, inputs, None);
+    Ok(assembled.map_err(RenderError::from)?.frame)
+}
