@@ -17,6 +17,8 @@
 //! lengths from about 1e12 m and to about 1e-10 m, it is taken in double precision; coordinates from 1e-15 m to 1e18 m
 //! are valid.
 
+use std::ops::RangeInclusive;
+
 use glam::{BVec3A, DVec3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{Bounds, Ray};
@@ -291,45 +293,21 @@ pub fn scaled_normal(v: &[Vec3; 3]) -> Vec3 {
 /// Square of the distance from a point to a triangle.
 ///
 /// Over the triangle that is the height over its plane, elsewhere the distance to the nearest edge; so it holds for
-/// triangles without area, too. The squared height times the squared normal is a product of six lengths: it would leave
-/// the range of single precision among kilometres by the thousand, and the height is taken first. What is larger or
-/// smaller still is compared in double precision.
+/// triangles without area, too.
+#[inline]
 pub fn squared_distance(p: Vec3, v: &[Vec3; 3]) -> f32 {
     let n = scaled_normal(v);
     let squared = n.length_squared();
-    if !(LEAST_SQUARED_NORMAL..=GREATEST_SQUARED_NORMAL).contains(&squared) {
-        return squared_distance_in_double_precision(p, v);
+    let longest = (v[1] - v[0]).length_squared().max((v[2] - v[0]).length_squared());
+    if !(squared > ROUND * longest * longest && PLAIN_AREAS.contains(&squared)) {
+        return exact_squared_distance(p, v);
     }
     let edges = [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])];
     if edges.iter().all(|(a, b)| n.cross(b - a).dot(p - a) > 0.0) {
-        let height = n.dot(p - v[0]) / squared.sqrt();
-        return height * height;
+        let height = n.dot(p - v[0]);
+        return height / squared * height;
     }
     edges.iter().map(|&(a, b)| squared_distance_to_segment(p, a, b)).fold(f32::INFINITY, f32::min)
-}
-
-/// Squares of normals, products of four lengths, from which on heights keep their digits.
-const LEAST_SQUARED_NORMAL: f32 = 1e-30;
-/// Those up to which no product of them with another length overflows.
-const GREATEST_SQUARED_NORMAL: f32 = 1e36;
-
-#[cold]
-fn squared_distance_in_double_precision(p: Vec3, v: &[Vec3; 3]) -> f32 {
-    let (p, v) = (p.as_dvec3(), v.map(|v| v.as_dvec3()));
-    let n = (v[1] - v[0]).cross(v[2] - v[0]);
-    let edges = [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])];
-    if edges.iter().all(|(a, b)| n.cross(b - a).dot(p - a) > 0.0) {
-        let height = n.dot(p - v[0]) / n.length();
-        return (height * height) as f32;
-    }
-    let to_edge = |&(a, b): &(DVec3, DVec3)| {
-        let along = b - a;
-        let s = (p - a).dot(along) / along.length_squared();
-        // A segment without length gives no number, which clamps to its start.
-        let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
-        (p - (a + along * s)).length_squared()
-    };
-    edges.iter().map(to_edge).fold(f64::INFINITY, f64::min) as f32
 }
 
 fn squared_distance_to_segment(p: Vec3, a: Vec3, b: Vec3) -> f32 {
@@ -338,6 +316,31 @@ fn squared_distance_to_segment(p: Vec3, a: Vec3, b: Vec3) -> f32 {
     // A segment without length gives no number, which clamps to its start.
     let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
     (p - (a + along * s)).length_squared()
+}
+
+/// Squares of doubled areas, relative to the fourth power of an edge, above which a normal has its digits in single
+/// precision: those of slivers of more than ten times their width are less.
+const ROUND: f32 = 1e-2;
+/// Squares of doubled areas, in m^4, for which no product of four lengths leaves the range of single precision.
+const PLAIN_AREAS: RangeInclusive<f32> = 1e-20..=1e24;
+
+/// The same in double precision, for slivers and for triangles of kilometres or micrometres.
+#[cold]
+fn exact_squared_distance(p: Vec3, v: &[Vec3; 3]) -> f32 {
+    let p = p.as_dvec3();
+    let from = v.map(|corner| corner.as_dvec3() - p);
+    let edges = [from[1] - from[0], from[2] - from[1], from[0] - from[2]];
+    let n = edges[0].cross(edges[1]);
+    if (0..3).all(|k| n.cross(edges[k]).dot(from[k]) < 0.0) {
+        let height = n.dot(from[0]);
+        return (height * height / n.length_squared()) as f32;
+    }
+    let to_edge = |k: usize| {
+        let s = -from[k].dot(edges[k]) / edges[k].length_squared();
+        let s = if s > 0.0 { s.min(1.0) } else { 0.0 };
+        (from[k] + edges[k] * s).length_squared()
+    };
+    (0..3).map(to_edge).fold(f64::INFINITY, f64::min) as f32
 }
 
 #[cfg(test)]
@@ -432,20 +435,37 @@ mod tests {
         }
 
         #[test]
-        fn the_distance_is_that_of_the_nearest_point(
-            a in vector(), b in vector(), c in vector(), p in vector(), power in -12_i32..=12
-        ) {
-            let scale = 10.0_f32.powi(power);
-            let squared = squared_distance(p * 2.0 * scale, &[a * scale, b * scale, c * scale]);
-            let distance = squared.sqrt() / scale;
+        fn the_distance_is_that_of_the_nearest_point(a in vector(), b in vector(), c in vector(), p in vector()) {
+            let squared = squared_distance(p * 2.0, &[a, b, c]);
             let points = (0..=64).flat_map(|i| (0..=64 - i).map(move |j| (i as f32 / 64.0, j as f32 / 64.0)));
             let sampled = points
                 .map(|(s, t)| (a * s + b * t + c * (1.0 - s - t)).distance_squared(p * 2.0))
                 .fold(f32::INFINITY, f32::min);
             // The nearest point is within the spacing of the samples.
             let spacing = (a - b).length().max((b - c).length()).max((c - a).length()) / 64.0;
-            prop_assert!(distance <= sampled.sqrt() + 1e-5);
-            prop_assert!(distance >= sampled.sqrt() - spacing - 1e-5);
+            prop_assert!(squared.sqrt() <= sampled.sqrt() + 1e-5);
+            prop_assert!(squared.sqrt() >= sampled.sqrt() - spacing - 1e-5);
+        }
+
+        /// In single precision among metres, in double among micrometres and thousands of kilometres.
+        #[test]
+        fn the_distance_grows_with_the_scene(a in vector(), b in vector(), c in vector(), p in vector(), e in -30_i32..40) {
+            let scale = 2.0_f32.powi(e);
+            let here = squared_distance(p, &[a, b, c]);
+            let there = squared_distance(p * scale, &[a * scale, b * scale, c * scale]);
+            // The height of a triangle with a tenth of an equal one's area is off by some units of its size.
+            let sizes = [a, b, c].map(|v| v.distance(p)).iter().sum::<f32>();
+            prop_assert!((there / (scale * scale) - here).abs() <= 1e-5 * sizes * here.sqrt() + 1e-10, "{there} {here}");
+        }
+
+        /// A sliver a micrometre wide is as far away as its plane.
+        #[test]
+        fn the_distance_over_slivers_is_the_height(x in 0.01_f32..0.99, width in 1e-7_f32..1e-3, height in 1e-4_f32..1.0) {
+            let v = [Vec3::new(0.0, x, 0.0), Vec3::new(1.0, x, 0.0), Vec3::new(1.0, x + width, 0.0)];
+            let over = (v[0] + v[1] + v[2]) / 3.0 + Vec3::Z * height;
+            let found = squared_distance(over, &v).sqrt();
+            // As long as the point is over the sliver at all, in single precision; else it is a width beside it.
+            prop_assert!((found / height - 1.0).abs() < 1e-5 + (width / height).powi(2), "{found} {height}");
         }
 
         #[test]

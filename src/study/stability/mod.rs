@@ -24,7 +24,7 @@ mod grazing;
 mod index;
 mod limits;
 mod radiance;
-mod scale;
+mod size;
 mod sun;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
@@ -57,7 +57,7 @@ pub const GROUPS: [Group; 12] = [
     limits::DEPTH,
     limits::SAMPLES,
     limits::RESOLUTION,
-    scale::GROUP,
+    size::GROUP,
 ];
 
 /// Which cases are run.

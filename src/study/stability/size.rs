@@ -9,7 +9,7 @@ use crate::study::StudyError;
 
 /// The group.
 pub(super) const GROUP: Group = Group {
-    name: "scale",
+    name: "size",
     parameter: "metres",
     about: "A scene from microns to a million kilometres, with coefficients over its size.",
     cases,
