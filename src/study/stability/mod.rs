@@ -31,6 +31,7 @@ mod limits;
 mod offsets;
 mod radiance;
 mod scale;
+mod size;
 mod slivers;
 mod sun;
 
@@ -52,7 +53,7 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 18] = [
+pub const GROUPS: [Group; 19] = [
     extinction::GROUP,
     half_spaces::GROUP,
     albedo::GROUP,
@@ -65,6 +66,7 @@ pub const GROUPS: [Group; 18] = [
     limits::DEPTH,
     limits::SAMPLES,
     limits::RESOLUTION,
+    size::GROUP,
     scale::GROUP,
     offsets::GROUP,
     slivers::GROUP,
