@@ -11,7 +11,8 @@
 //!
 //! P is the probability of Student's t of f degrees of freedom to be further from 0; (2) is of `[SATTERTHWAITE46 eq. 17]`,
 //! with a variance of the reference that is known. (3) holds whatever regions have to do with each other, so also where pixels
-//! share their noise, as those of one pass of photons do. Repeats have to be about normal: where a block's light comes in
+//! share their noise, as those of one pass of photons do; a reference that was not rendered here counts as one whose pixels
+//! do not, which makes p too small if they do. Repeats have to be about normal: where a block's light comes in
 //! rare great values, p is too small.
 
 use serde::{Deserialize, Serialize};

@@ -186,10 +186,10 @@ fn slope(series: &[&Series], slope: f64, label: &str) -> Option<Guide> {
 }
 
 fn named_with_slope(series: &Series) -> String {
-    let sign = |value: f64| format!("{value:.2}").replace('-', "\u{2212}");
+    let sign = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
     match &series.slope_by_time {
         Some(slope) => {
-            format!("{}: {} \u{b1} {:.2}", series.name, sign(slope.value), slope.half_width)
+            format!("{}: {} \u{b1} {:.3}", series.name, sign(slope.value), slope.half_width)
         }
         None => series.name.clone(),
     }

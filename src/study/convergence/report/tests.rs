@@ -107,7 +107,7 @@ fn values_have_their_names_and_all_their_digits() {
 #[test]
 fn the_diagram_shows_what_was_measured() {
     let plot = plot(&results());
-    assert_eq!(plot.series[0].name, "path, kind = \"x\": \u{2212}0.50 \u{b1} 0.01");
+    assert_eq!(plot.series[0].name, "path, kind = \"x\": \u{2212}0.500 \u{b1} 0.012");
     assert_eq!(plot.series[0].points[1].y_range.map(|r| r[0] < r[1]), Some(true));
     let Some(Guide::Slope { slope, through: [x, y], .. }) = plot.guides.last() else { panic!("{plot:?}") };
     for point in plot.series.iter().flat_map(|series| &series.points) {
