@@ -157,6 +157,8 @@ fn media_in_every_notation() {
     let extinction = ExtinctionDescription {
         extinction: Spectrum::Rgb([80.0, 90.0, 100.0]),
         albedo: Spectrum::Constant(0.999),
+        // Nearer to a thousandth than what 0.999 in single precision leaves of 1.
+        absorbed: Spectrum::Constant(0.001),
     };
     assert_eq!((&milk.extinction, &milk.absorption), (&Some(extinction), &None));
     assert_eq!(milk.density, DensityDescription::Stratified { depth: 2.0, surface: 0.0 });

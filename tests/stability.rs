@@ -1,7 +1,7 @@
 //! The stability battery (`floe study --stability`).
 #![allow(clippy::print_stdout)]
 
-use floe::study::stability::{Outcome, Selection, run, table};
+use floe::study::stability::{GROUPS, Outcome, Selection, run, table};
 
 /// Prints the rows of a selection and panics if one fails.
 fn assert_passes(selection: &Selection) {
@@ -13,11 +13,28 @@ fn assert_passes(selection: &Selection) {
     assert!(!rows.is_empty() && failed.is_empty(), "{failed:?}");
 }
 
+/// What is documented was made by `floe study --stability --output DIR`, and is about all cases.
+#[test]
+fn the_page_has_a_row_for_every_case_and_none_that_fails() {
+    let page = include_str!("../src/study/stability.md");
+    let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| ---"));
+    let cases = GROUPS.iter().flat_map(|group| (group.cases)());
+    let mut count = 0;
+    for case in cases {
+        let beginning = format!("| {} | {} |", table::number(case.parameter), case.name);
+        assert!(page.contains(&beginning), "stability.md lacks {beginning}");
+        count += 1;
+    }
+    assert_eq!(rows.count(), count + GROUPS.len(), "rows of cases that are no more");
+    assert!(!page.contains("FAIL"));
+}
+
 #[test]
 fn the_quick_cases_are_as_expected() {
     assert_passes(&Selection { quick: true, ..Selection::default() });
 }
 
+/// `FLOE_STABILITY=sun,size` runs these groups only.
 #[test]
 #[ignore = "minutes"]
 fn every_case_is_as_expected() {

@@ -206,8 +206,9 @@ impl PixelAccumulator {
             position,
             depth,
             motion: (self.motion / f64::from(self.hits.max(1))).as_vec2(),
-            variance: variance.as_vec3(),
-            luminance_variance: luminance_variance as f32,
+            // A square may leave the range of f32 where its root does not; infinite it would spoil every mean.
+            variance: variance.as_vec3().min(Vec3::MAX),
+            luminance_variance: (luminance_variance as f32).min(f32::MAX),
             samples,
             replicates: self.filled().count() as u32,
             rejected: self.rejected,

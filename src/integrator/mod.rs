@@ -18,6 +18,7 @@ mod led;
 mod left_out;
 pub mod path;
 pub mod photon;
+mod roulette;
 pub mod scattered;
 mod vertex;
 mod walk;

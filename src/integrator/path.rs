@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::direct::Receiver;
 use super::flight::{Around, Event};
 use super::photon::{self, PhotonPass};
+use super::roulette::at_random;
 use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
@@ -433,7 +434,7 @@ impl Branch {
         let kept = self.throughput.max_element() / (self.index_factor * self.share);
         let late = self.late_survival();
         // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
-        let survival = if kept >= UNTOUCHED { late } else { kept / UNTOUCHED * late };
+        let survival = at_random(if kept >= UNTOUCHED { late } else { kept / UNTOUCHED * late });
         if survival >= 1.0 {
             return Fate::GoesOn;
         }

@@ -261,7 +261,14 @@ fn coefficients_of(medium: &MediumDescription, mode: LaneMode) -> [LaneCurve; 2]
         Some(given) => {
             let sigma_t = given.extinction.prepare(Role::Coefficient, mode);
             let albedo = given.albedo.prepare(Role::Reflectance, mode);
-            [sigma_t.combined(&albedo, |t, a| t * (1.0 - a)), sigma_t.combined(&albedo, |t, a| t * a)]
+            let share = |share: &LaneCurve| sigma_t.combined(share, |t, share| t * share);
+            // Over wavelength what a colour leaves of 1 is not the curve of what its numbers leave.
+            let is_upsampled = mode == LaneMode::Spectral && matches!(given.albedo, Spectrum::Rgb(_));
+            let absorbed = match is_upsampled {
+                true => albedo.combined(&albedo, |a, _| 1.0 - a),
+                false => given.absorbed.prepare(Role::Reflectance, mode),
+            };
+            [share(&absorbed), share(&albedo)]
         }
         None => [
             absorption_of(medium).prepare(Role::Coefficient, mode),

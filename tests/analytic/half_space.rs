@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
+use floe::study::stability::h_function::HFunction;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
 use super::walls::sky_picture;
-use crate::common::h_function::HFunction;
 use crate::common::mesh::{TestMesh, parallelogram, sphere};
 use crate::common::scene::SceneFolder;
 

@@ -1,4 +1,4 @@
-//! `floe study --temporal`.
+//! `floe study`.
 
 use super::*;
 
@@ -62,4 +62,25 @@ fn options_of_another_mode_are_refused_by_name() {
     ] {
         floe(&folder, &[&["study", "boxes"][..], more].concat()).ended(2).says(words);
     }
+}
+
+#[test]
+fn the_battery_of_stability_prints_rows_and_writes_tables_and_diagrams() {
+    let folder = boxes(1, "");
+    let only = ["study", "--stability", "--only", "resolution", "--quick"];
+    let table = floe(&folder, &[&only[..], &["-o", "results"]].concat()).ended(0);
+    assert!(table.stderr.is_empty() && table.stdout.contains("0 fail"), "{table:#?}");
+    let text = |name: &str| String::from_utf8(folder.read(name)).unwrap();
+    let rows = text("results/stability.csv").lines().count() - 1;
+    assert!(rows >= 5 && table.stdout.lines().count() >= rows + 2, "{table:#?}");
+    let value: serde_json::Value = serde_json::from_str(&text("results/stability.json")).unwrap();
+    assert_eq!(value.as_array().unwrap().len(), rows);
+    assert!(text("results/stability.md").contains("### resolution"));
+    assert!(text("results/stability_resolution.svg").starts_with("<"));
+    let json = floe(&folder, &[&only[..], &["--json"]].concat()).ended(0);
+    assert!(serde_json::from_str::<serde_json::Value>(&json.stdout).is_ok(), "{json:#?}");
+    floe(&folder, &["study", "--stability", "--only", "moon"]).ended(2).says(&["moon", "resolution"]);
+    floe(&folder, &["study", "boxes", "--stability"]).ended(2).says(&["--stability"]);
+    floe(&folder, &["study", "boxes", "--quick"]).ended(2).says(&["--quick", "SCENE"]);
+    floe(&folder, &["study", "--quick"]).ended(2).says(&["--stability"]);
 }

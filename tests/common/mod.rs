@@ -3,7 +3,6 @@
 // Each test file is a crate of its own and uses a part of this one.
 #![allow(dead_code)]
 
-pub mod h_function;
 pub mod mesh;
 pub mod numbers;
 pub mod reference;

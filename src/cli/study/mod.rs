@@ -5,6 +5,7 @@
 //! mode has no use for it `conflicts_with`.
 
 mod convergence;
+mod stability;
 mod temporal;
 
 use std::path::{Path, PathBuf};
@@ -21,26 +22,29 @@ use crate::study::StudyError;
 #[derive(Debug, Args)]
 pub struct StudyArguments {
     /// A scene file, or a folder with scene.toml or with frames
-    scene: PathBuf,
+    #[arg(required_unless_present = "stability", conflicts_with = "stability")]
+    scene: Option<PathBuf>,
     #[command(flatten)]
     shared: Shared,
     #[command(flatten)]
     temporal: temporal::TemporalArguments,
+    #[command(flatten)]
+    stability: stability::StabilityArguments,
 }
 
 /// What several modes take.
 #[derive(Debug, Args)]
 struct Shared {
     /// The frame to study [default: the first]
-    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "temporal")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with_all = ["temporal", "stability"])]
     frame: Option<FrameNumber>,
     /// The first seed; others follow it [default: render.seed of the scene]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", conflicts_with = "stability")]
     seed: Option<u64>,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Write the results here too: with --temporal a file that ends with .csv or .json
+    /// Write the results here too: with --temporal a file that ends with .csv or .json, with --stability a folder
     #[arg(long, short, value_name = "PATH")]
     output: Option<PathBuf>,
     /// Only errors and the results
@@ -50,10 +54,11 @@ struct Shared {
 
 /// Renders, measures and prints.
 pub fn run(arguments: &StudyArguments) -> Exit {
-    let StudyArguments { scene, shared, temporal } = arguments;
-    let result = match () {
-        () if temporal.is_asked_for() => temporal::run(scene, shared, temporal),
-        () => convergence::run(scene, shared),
+    let StudyArguments { scene, shared, temporal, stability } = arguments;
+    let result = match scene {
+        None => Ok(stability::run(shared, stability)),
+        Some(scene) if temporal.is_asked_for() => temporal::run(scene, shared, temporal),
+        Some(scene) => convergence::run(scene, shared),
     };
     result.unwrap_or_else(|error| {
         say(&format!("error: {error}"));

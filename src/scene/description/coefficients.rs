@@ -36,10 +36,9 @@ pub(super) fn read(
         }
         let extinction = table.require("extinction", "`albedo` is a share of it: write it in 1/m")?;
         let albedo = table.require("albedo", "write the share of scattering in `extinction`, from 0 to 1")?;
-        let extinction = ExtinctionDescription {
-            extinction: spectrum_value::spectrum(&extinction, &Allowed::NOT_NEGATIVE)?,
-            albedo: spectrum_value::spectrum(&albedo, &Allowed::UNIT)?,
-        };
+        let [albedo, absorbed] = spectrum_value::share_and_rest(&albedo)?;
+        let extinction = spectrum_value::spectrum(&extinction, &Allowed::NOT_NEGATIVE)?;
+        let extinction = ExtinctionDescription { extinction, albedo, absorbed };
         let scattering = Spectrum::Constant(0.0);
         return Ok(Coefficients { absorption: None, scattering, extinction: Some(extinction) });
     }

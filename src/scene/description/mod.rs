@@ -202,6 +202,8 @@ pub struct ExtinctionDescription {
     pub extinction: Spectrum,
     /// The share of scattering in it.
     pub albedo: Spectrum,
+    /// The share of absorption: 1 less that, with its digits where that is next to 1.
+    pub absorbed: Spectrum,
 }
 
 /// `density = ..`, relative: both coefficients are multiplied by it.

@@ -12,6 +12,9 @@ const LIGHT_FORMS: &str = "a number, [r, g, b], { wavelength = [..], value = [..
 /// Maximum luminous efficacy in lm/W: luminance and illuminance in units of what the spectrum is in.
 const LUMENS_PER_WATT: f32 = 683.0;
 
+/// Reads one number.
+type ReadNumber<'a> = dyn Fn(&Value<'_>) -> Result<f32, SceneError> + 'a;
+
 /// Number | RGB | `{ wavelength = [..], value = [..] }`, each number within a range.
 pub(super) fn spectrum(value: &Value<'_>, allowed: &Allowed) -> Result<Spectrum, SceneError> {
     read(value, allowed, FORMS)
@@ -46,17 +49,28 @@ pub(super) fn irradiance(value: &Value<'_>) -> Result<Spectrum, SceneError> {
     Ok(spectrum)
 }
 
+/// A share as [`spectrum`], and what it leaves of 1: taken before both are rounded, so that it has its digits where it
+/// is next to nothing.
+pub(super) fn share_and_rest(value: &Value<'_>) -> Result<[Spectrum; 2], SceneError> {
+    let rest = |v: &Value<'_>| Ok((1.0 - v.number(&Allowed::UNIT)?) as f32);
+    Ok([spectrum(value, &Allowed::UNIT)?, read_by(value, FORMS, &rest)?])
+}
+
 fn read(value: &Value<'_>, allowed: &Allowed, forms: &str) -> Result<Spectrum, SceneError> {
+    read_by(value, forms, &|v| v.number32(allowed))
+}
+
+fn read_by(value: &Value<'_>, forms: &str, number: &ReadNumber<'_>) -> Result<Spectrum, SceneError> {
     if value.is_table() {
         let table = value.table(forms)?;
         let wavelengths = wavelengths(&table)?;
-        let values = samples(&table, "value", allowed, wavelengths.len())?;
+        let values = samples_by(&table, "value", number, wavelengths.len())?;
         table.finish()?;
         Ok(Spectrum::Table { wavelengths, values })
     } else if value.is_array() {
-        Ok(Spectrum::Rgb(value.triple(forms, |v| v.number32(allowed))?))
+        Ok(Spectrum::Rgb(value.triple(forms, number)?))
     } else if value.is_number() {
-        Ok(Spectrum::Constant(value.number32(allowed)?))
+        Ok(Spectrum::Constant(number(value)?))
     } else {
         Err(value.invalid(format!("write {forms}")))
     }
@@ -88,11 +102,20 @@ pub(super) fn samples(
     allowed: &Allowed,
     count: usize,
 ) -> Result<Vec<f32>, SceneError> {
+    samples_by(table, key, &|v| v.number32(allowed), count)
+}
+
+fn samples_by(
+    table: &Table<'_>,
+    key: &'static str,
+    number: &ReadNumber<'_>,
+    count: usize,
+) -> Result<Vec<f32>, SceneError> {
     let value = table.require(key, "write one number for each wavelength")?;
     let numbers = value.elements("one number for each wavelength")?;
     if numbers.len() != count {
         let found = numbers.len();
         return Err(value.invalid(format!("{found} numbers for {count} wavelengths: write one for each")));
     }
-    numbers.iter().map(|number| number.number32(allowed)).collect()
+    numbers.iter().map(number).collect()
 }

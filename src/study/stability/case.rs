@@ -45,6 +45,8 @@ pub enum Loss {
     Cut,
     /// Total reflection without end.
     Trapped,
+    /// Paths on the wrong side of a surface by rounding, more than one flight in a million.
+    Astray,
 }
 
 /// What was measured.
@@ -137,13 +139,13 @@ pub struct Row {
 impl Case {
     /// A case.
     pub fn new(
-        group: &'static str,
+        group: &super::Group,
         name: impl Into<String>,
         parameter: f64,
         measure: impl Fn() -> Result<Measurement, StudyError> + Send + Sync + 'static,
     ) -> Self {
         Self {
-            group,
+            group: group.name,
             name: name.into(),
             parameter,
             is_quick: false,
@@ -155,7 +157,13 @@ impl Case {
     /// Part of the quick subset.
     #[must_use]
     pub fn quick(self) -> Self {
-        Self { is_quick: true, ..self }
+        self.quick_if(true)
+    }
+
+    /// Part of the quick subset under a condition.
+    #[must_use]
+    pub fn quick_if(self, is_quick: bool) -> Self {
+        Self { is_quick, ..self }
     }
 
     /// Known not to be as expected, for this reason, by at most this relative error.
@@ -245,6 +253,27 @@ impl Measurement {
         self
     }
 
+    /// A picture's mean grey, of which the red channel is taken.
+    pub fn mean_of(picture: &Picture, reference: Reference, expected: f64) -> Self {
+        let (mean, error) = picture.mean();
+        Self::new(reference, expected, mean.x).of(picture).standard_error(error.x)
+    }
+
+    /// Each of the three channels of a picture's mean.
+    pub fn channels_of(picture: &Picture, reference: Reference, expected: [f64; 3]) -> [Self; 3] {
+        let (mean, error) = picture.mean();
+        let channel = |i: usize| {
+            let measured = Self::new(reference, expected[i], mean[i]).standard_error(error[i]);
+            Self { note: format!("channel {i}"), ..measured }.of(picture)
+        };
+        [0, 1, 2].map(channel)
+    }
+
+    /// The pixel and channel that is farthest from what all of them should be.
+    pub fn farthest_in(picture: &Picture, reference: Reference, expected: f64) -> Self {
+        Self::new(reference, expected, picture.farthest(expected)).of(picture)
+    }
+
     /// With noise.
     #[must_use]
     pub fn standard_error(self, standard_error: f64) -> Self {
@@ -297,7 +326,8 @@ impl Measurement {
         let c = &self.counters;
         let allows = |loss| self.losses.contains(&loss);
         // Points next to a surface may lie beyond it by their rounding: one flight in a million, as in any sound frame.
-        let rare = |count: u64| count as f64 <= ((c.rays + c.untraced) as f64 * 1e-6).max(3.0);
+        let most = ((c.rays + c.untraced) as f64 * 1e-6).max(3.0);
+        let rare = |count: u64| count as f64 <= most || allows(Loss::Astray);
         [
             ("not finite", c.non_finite, false),
             ("depth limited", c.depth_limited, allows(Loss::DepthLimited)),
@@ -332,9 +362,12 @@ impl Measurement {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::stability::Group;
+
+    const TEST: Group = Group { name: "test", parameter: "", about: "", cases: Vec::new };
 
     fn outcome(measured: Measurement) -> Outcome {
-        Case::new("test", "test", 1.0, move || Ok(measured.clone())).run().outcome
+        Case::new(&TEST, "test", 1.0, move || Ok(measured.clone())).run().outcome
     }
 
     fn close() -> Measurement {
@@ -377,7 +410,7 @@ mod tests {
     #[test]
     fn an_explanation_covers_no_more_than_it_says() {
         let run = |most, measured: Measurement| {
-            Case::new("test", "test", 1.0, move || Ok(measured.clone())).explained("because", most).run()
+            Case::new(&TEST, "test", 1.0, move || Ok(measured.clone())).explained("because", most).run()
         };
         let row = run(0.02, close());
         assert_eq!((row.outcome, row.note.as_str()), (Outcome::Explained, "because"));

@@ -21,7 +21,7 @@ const DEPTHS: [f64; 4] = [0.0, 1e-7, 1e-5, 2e-3];
 fn cases() -> Vec<Case> {
     let touching = TOUCHING.iter().flat_map(|&(name, bodies)| {
         LOSSLESS.map(|(of, media)| {
-            Case::new(GROUP.name, format!("white furnace, {of}: {name}"), 0.0, move || {
+            Case::new(&GROUP, format!("white furnace, {of}: {name}"), 0.0, move || {
                 Ok(furnace(&Scene::new().frame(bodies()).render(&format!("{LABELS}{media}{WHITE}"))?))
             })
             .quick()
@@ -29,7 +29,7 @@ fn cases() -> Vec<Case> {
     });
     let poking = LOSSLESS.iter().flat_map(|&(of, media)| {
         DEPTHS.map(|depth| {
-            Case::new(GROUP.name, format!("white furnace, {of}: water into glass"), depth, move || {
+            Case::new(&GROUP, format!("white furnace, {of}: water into glass"), depth, move || {
                 let media = format!("{media}[media.glass]\nior = 1.5\n");
                 Ok(furnace(&in_glass(depth, &media, WHITE)?))
             })
@@ -37,7 +37,7 @@ fn cases() -> Vec<Case> {
         })
     });
     let dark = DEPTHS.map(|depth| {
-        Case::new(GROUP.name, "exp(-a d) through glass and water", depth, move || chord(depth)).quick()
+        Case::new(&GROUP, "exp(-a d) through glass and water", depth, move || chord(depth)).quick()
     });
     touching.chain(poking).chain(dark).collect()
 }

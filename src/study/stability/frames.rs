@@ -29,16 +29,16 @@ const PAIRS: [(&str, Make, Make); 4] = [
 fn cases() -> Vec<Case> {
     let jumps = JUMPS.map(|jump| {
         let measure = move || as_alone(body(jump), body(0.0));
-        Case::new(GROUP.name, "pixels unlike those of the frame alone: after a jump", jump, measure).quick()
+        Case::new(&GROUP, "pixels unlike those of the frame alone: after a jump", jump, measure).quick()
     });
     let pairs = PAIRS.iter().map(|&(name, before, mesh)| {
         let name = format!("pixels unlike those of the frame alone: {name}");
-        Case::new(GROUP.name, name, 0.0, move || as_alone(before(), mesh())).quick()
+        Case::new(&GROUP, name, 0.0, move || as_alone(before(), mesh())).quick()
     });
     let blurred = LOSSLESS.iter().flat_map(|&(name, media)| {
         JUMPS.map(|jump| {
             let measure = move || blurred(jump, media);
-            Case::new(GROUP.name, format!("white furnace, {name}, while the shutter is open"), jump, measure)
+            Case::new(&GROUP, format!("white furnace, {name}, while the shutter is open"), jump, measure)
                 .quick()
         })
     });

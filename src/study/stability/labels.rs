@@ -69,13 +69,12 @@ const SOUND: [(&str, Make, usize); 3] = [
 fn cases() -> Vec<Case> {
     let wrong = WRONG.iter().flat_map(|wrong| {
         LOSSLESS.map(|(of, media)| {
-            Case::new(GROUP.name, format!("told, {of}: {}", wrong.name), 1.0, move || tells(wrong, media))
-                .quick()
+            Case::new(&GROUP, format!("told, {of}: {}", wrong.name), 1.0, move || tells(wrong, media)).quick()
         })
     });
     let right = SOUND.iter().map(|&(name, mesh, warnings)| {
         let measure = move || sound(mesh(), warnings);
-        Case::new(GROUP.name, format!("warnings: {name}"), 0.0, measure).quick()
+        Case::new(&GROUP, format!("warnings: {name}"), 0.0, measure).quick()
     });
     wrong.chain(right).collect()
 }

@@ -2,22 +2,37 @@
 //!
 //! A [`Group`] is about one such parameter and has a [`Case`] for each of its values; a case renders small scenes that are
 //! put together in memory ([`scene`]) and compares a number with what is known of it: a closed form, a limit, or an
-//! invariance. [`case`] judges. A new group is a file here and a line in [`GROUPS`].
+//! invariance. [`case`] judges, [`table`] and [`diagram`] show. A new group is a file here and a line in [`GROUPS`].
+//!
+//! These are the results of `floe study --stability --output FOLDER` in `stability.md`, of all cases:
+#![doc = include_str!("../stability.md")]
 
 pub mod case;
+pub mod diagram;
+pub mod h_function;
 pub mod picture;
+pub mod pieces;
 pub mod scene;
 pub mod shapes;
 pub mod table;
 
+mod albedo;
+mod asymmetry;
 mod bodies;
+mod chromatic;
 mod contacts;
 mod extinction;
 mod frames;
+mod grazing;
+mod index;
 mod labels;
+mod limits;
 mod offsets;
+mod radiance;
 mod scale;
+mod size;
 mod slivers;
+mod sun;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
 pub use picture::{Picture, render};
@@ -37,8 +52,19 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 7] = [
+pub const GROUPS: [Group; 18] = [
     extinction::GROUP,
+    albedo::GROUP,
+    asymmetry::GROUP,
+    index::GROUP,
+    grazing::GROUP,
+    sun::GROUP,
+    radiance::GROUP,
+    chromatic::GROUP,
+    limits::DEPTH,
+    limits::SAMPLES,
+    limits::RESOLUTION,
+    size::GROUP,
     scale::GROUP,
     offsets::GROUP,
     slivers::GROUP,

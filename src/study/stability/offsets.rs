@@ -33,21 +33,18 @@ const FORMATS: [(&str, Write); 3] = [
 fn cases() -> Vec<Case> {
     let pictures = FORMATS.iter().flat_map(|&(name, write)| {
         [1e3, 1e5, 1e7].map(|offset| {
-            let case = Case::new(GROUP.name, format!("the same picture, {name}"), offset, move || {
+            let case = Case::new(&GROUP, format!("the same picture, {name}"), offset, move || {
                 same(name, write, offset)
             });
             if offset == 1e7 { case.quick() } else { case }
         })
     });
     let warnings = [0.0, 1e3, 1e5, 1e6, 1e7].map(|offset| {
-        Case::new(GROUP.name, "a binary float file is told to have lost its detail", offset, move || {
-            lost(offset)
-        })
-        .quick()
+        Case::new(&GROUP, "a binary float file is told to have lost its detail", offset, move || lost(offset))
+            .quick()
     });
     let frames = [1e3, 1e7].map(|offset| {
-        Case::new(GROUP.name, "the same picture, frames with labels", offset, move || labelled(offset))
-            .quick()
+        Case::new(&GROUP, "the same picture, frames with labels", offset, move || labelled(offset)).quick()
     });
     pictures.chain(frames).chain(warnings).collect()
 }

@@ -31,7 +31,7 @@ fn cases() -> Vec<Case> {
     let pictures = WAYS.iter().flat_map(|&(name, scattering, way)| {
         SCALES.iter().map(move |&scale| {
             let name = format!("the same picture, {name}");
-            let case = Case::new(GROUP.name, name, scale, move || {
+            let case = Case::new(&GROUP, name, scale, move || {
                 Ok(alike(&picture(1.0, scattering, way)?, &picture(scale, scattering, way)?))
             });
             if [1e-6, 1e7].contains(&scale) { case.quick() } else { case }
@@ -39,12 +39,10 @@ fn cases() -> Vec<Case> {
     });
     let fine = [2, 5, 8].map(|levels| {
         let triangles = 8.0 * f64::from(1 << (2 * levels));
-        let case = Case::new(
-            GROUP.name,
-            "a clear ball of many triangles in a white furnace",
-            triangles,
-            move || ball(levels),
-        );
+        let case =
+            Case::new(&GROUP, "a clear ball of many triangles in a white furnace", triangles, move || {
+                ball(levels)
+            });
         if levels < 8 { case.quick() } else { case }
     });
     pictures.chain(fine).collect()

@@ -20,23 +20,22 @@ fn cases() -> Vec<Case> {
     let furnaces = LOSSLESS.iter().flat_map(|&(name, media)| {
         ASPECTS.map(|aspect| {
             let name = format!("white furnace, {name}");
-            let case = Case::new(GROUP.name, name, aspect, move || {
+            let case = Case::new(&GROUP, name, aspect, move || {
                 Ok(furnace(&render(sliced(aspect).labelled(0, 1), media, WHITE)?))
             });
             if aspect == 1e6 { case.quick() } else { case }
         })
     });
-    let dark = ASPECTS.map(|aspect| {
-        Case::new(GROUP.name, "exp(-a d) through slivers", aspect, move || chord(aspect)).quick()
-    });
+    let dark = ASPECTS
+        .map(|aspect| Case::new(&GROUP, "exp(-a d) through slivers", aspect, move || chord(aspect)).quick());
     let same = ASPECTS.map(|aspect| {
-        Case::new(GROUP.name, "the same picture as of large triangles", aspect, move || {
+        Case::new(&GROUP, "the same picture as of large triangles", aspect, move || {
             Ok(alike(&over_sky(cuboid(MIN, MAX).askew())?, &over_sky(sliced(aspect).askew())?))
         })
     });
     let others = OTHERS.iter().flat_map(|&(name, change)| {
         LOSSLESS.map(|(of, media)| {
-            Case::new(GROUP.name, format!("white furnace, {of}: {name}"), 1.0, move || {
+            Case::new(&GROUP, format!("white furnace, {of}: {name}"), 1.0, move || {
                 Ok(furnace(&render(change(cuboid(MIN, MAX).labelled(0, 1)), media, WHITE)?))
             })
             .quick()

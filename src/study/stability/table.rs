@@ -74,9 +74,14 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
+/// The beginning of the page.
+const HEAD: &str = "# Stability\n\n\
+    What is off by how much where a parameter makes a scene hard, and how much it may be: 4.5 standard errors, and what the case\n\
+    derives. Flights are those of a sample, traced or not. What was lost is what was counted.\n";
+
 /// A page with a table a group.
 pub fn markdown(rows: &[Row]) -> String {
-    let mut text = String::new();
+    let mut text = HEAD.to_owned();
     for group in GROUPS {
         let own: Vec<&Row> = rows.iter().filter(|row| row.group == group.name).collect();
         if own.is_empty() {
@@ -119,7 +124,7 @@ pub fn name(outcome: Outcome) -> &'static str {
 }
 
 /// A parameter, short.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
         format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

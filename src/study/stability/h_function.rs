@@ -3,9 +3,11 @@
 //! ```text
 //! 1 / H(mu) = sqrt(1 - albedo) + albedo / 2 int_0^1 x H(x) / (mu + x) dx
 //! ```
-//! (S. Chandrasekhar, Radiative Transfer, Dover 1960, chapter V). It gives what a half space reflects and emits in closed
+//! `[CHANDRASEKHAR60 chapter V]`. It gives what a half space reflects and emits in closed
 //! form. Solved by iteration on the nodes of Gauss and Legendre; each step takes the mean of the old and the new value,
 //! without which conservative scattering oscillates.
+
+use std::f64::consts::PI;
 
 /// Nodes of the quadrature: the moments of H come out within 1e-6 of their closed forms.
 const NODES: usize = 64;
@@ -19,6 +21,7 @@ pub struct HFunction {
 }
 
 impl HFunction {
+    /// That of an albedo from 0 to 1.
     pub fn new(albedo: f64) -> Self {
         let nodes = gauss_legendre(NODES).into_iter().map(|[x, weight]| [x, weight, 1.0]).collect();
         let mut h = Self { albedo, nodes };
@@ -51,7 +54,7 @@ impl HFunction {
 fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
     let n = count as f64;
     let node = |i: usize| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+        let mut x = libm::cos(PI * (i as f64 + 0.75) / (n + 0.5));
         let mut slope = 1.0;
         for _ in 0..20 {
             let (mut p, mut before) = (x, 1.0);
