@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::driver::RenderError;
+use crate::optics::lorenz_mie::SphereError;
 use crate::sequence::FrameNumber;
 
 /// What a study lacks.
@@ -60,6 +61,9 @@ pub enum StudyError {
         /// The settings.
         text: String,
     },
+    /// A sphere that is none.
+    #[error(transparent)]
+    Sphere(#[from] SphereError),
     /// Time was up before anything was measured.
     #[error(
         "time was up before the reference was done: give more --time, fewer --reference-samples, or a --reference"

@@ -33,6 +33,7 @@ mod radiance;
 mod scale;
 mod size;
 mod slivers;
+mod spheres;
 mod sun;
 
 pub use case::{Case, Loss, Measurement, Outcome, Reference, Row};
@@ -53,7 +54,7 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 19] = [
+pub const GROUPS: [Group; 20] = [
     extinction::GROUP,
     half_spaces::GROUP,
     albedo::GROUP,
@@ -73,6 +74,7 @@ pub const GROUPS: [Group; 19] = [
     contacts::GROUP,
     labels::GROUP,
     frames::GROUP,
+    spheres::GROUP,
 ];
 
 /// Which cases are run.
