@@ -343,7 +343,7 @@ impl Sample<'_> {
         if self.frame.endless[branch.medium.0 as usize] {
             return;
         }
-        if branch.medium != MediumId(0) {
+        if !cfg!(floe_without_guards) && branch.medium != MediumId(0) {
             self.scratch.counters.escaped_inside += 1;
         }
         let lights = &self.frame.lights;

@@ -1,7 +1,7 @@
 //! What leaving out saves: each part that a shipped scene does without, forced in. `cargo bench --bench forced`.
 //!
 //! A scene is rendered as it is and with one part forced in, in turns on one thread. The table has the ratio of the least
-//! user CPU seconds of light transport and of the greatest memory in use from reading the frame to the finished pixels.
+//! CPU seconds of light transport and of the greatest memory in use from reading the frame to the finished pixels.
 //! Parts that take no light out of the picture leave its pixels as they were, or as they were but for other random
 //! numbers; what is forced by another integrator, an open shutter or a lens makes another picture.
 
@@ -11,8 +11,7 @@
 mod heap;
 mod parts;
 
-use std::time::Duration;
-
+use cpu_time::ProcessTime;
 use floe::driver::Job;
 use floe::driver::tiles::{Sampling, render_pixels};
 use parts::{PARTS, Part, SCENES, Scene};
@@ -71,20 +70,9 @@ fn render(scene: &Scene, forced: Option<&Part>) -> Cost {
         force(&mut frame.needs);
     }
     let sampling = Sampling::new(&job.world.description.render);
-    let before = user_time();
+    let before = ProcessTime::now();
     let (image, _) = render_pixels(&frame, &sampling, &|_, _| ());
-    let seconds = (user_time() - before).as_secs_f64();
+    let seconds = before.elapsed().as_secs_f64();
     assert!(image.pixels.iter().all(|p| p.rgb.is_finite()));
     Cost { seconds, bytes: heap::greatest() }
-}
-
-/// User CPU time of this process: other processes do not count.
-fn user_time() -> Duration {
-    let mut usage = std::mem::MaybeUninit::<libc::rusage>::zeroed();
-    #[allow(unsafe_code)] // SAFETY: getrusage fills the struct, of which zero is a value.
-    let usage = unsafe {
-        libc::getrusage(libc::RUSAGE_SELF, usage.as_mut_ptr());
-        usage.assume_init()
-    };
-    Duration::new(usage.ru_utime.tv_sec as u64, 1000 * usage.ru_utime.tv_usec as u32)
 }

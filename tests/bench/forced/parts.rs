@@ -18,9 +18,11 @@ pub struct Scene {
     scatters: bool,
     /// A light is looked for.
     lit: bool,
+    /// It is rendered by photons.
+    photons: bool,
 }
 
-pub const SCENES: [Scene; 2] = [
+pub const SCENES: [Scene; 3] = [
     Scene {
         name: "iceberg",
         frame: Some(6),
@@ -29,6 +31,7 @@ pub const SCENES: [Scene; 2] = [
         moves: true,
         scatters: true,
         lit: true,
+        photons: false,
     },
     Scene {
         name: "waters",
@@ -38,6 +41,17 @@ pub const SCENES: [Scene; 2] = [
         moves: false,
         scatters: true,
         lit: true,
+        photons: false,
+    },
+    Scene {
+        name: "pool",
+        frame: None,
+        resolution: "[160, 100]",
+        samples: 8,
+        moves: false,
+        scatters: false,
+        lit: true,
+        photons: true,
     },
 ];
 
@@ -110,7 +124,7 @@ pub const PARTS: [Part; 7] = [
     Part::need("emission of media: every flight is traced", |n| n.emission = true, |scene| scene.scatters),
     Part::need("varying density", |n| n.heterogeneous = true, |_| true),
     Part::need("shadow rays through boundaries", |n| n.matched_interfaces = true, |scene| scene.lit),
-    Part::says("photon maps", "[render]", "integrator = \"photon\"", |_| true),
+    Part::says("photon maps", "[render]", "integrator = \"photon\"", |scene| !scene.photons),
     Part::says("motion blur", "[camera]", "shutter = 0.5", |scene| scene.moves),
     Part::says("depth of field", "[camera]", "aperture = 0.001", |_| true),
 ];
