@@ -1,4 +1,5 @@
 //! What a frame needs of the renderer, and what is left out.
+#![doc = include_str!("left_out.md")]
 
 use std::fmt;
 
