@@ -1,85 +1,30 @@
-//! Small meshes, written as ASCII PLY.
+//! Small meshes, those of the stability battery, and what moves them.
 
-use std::collections::BTreeMap;
-use std::fmt::Write;
-
+pub use floe::study::stability::shapes::{Shape as TestMesh, cuboid, parallelogram, sphere};
 use glam::DVec3;
 
 /// Lines of the header of a file with velocities.
 const HEADER_LINES: usize = 12;
 const VELOCITY: &str = "property double vx\nproperty double vy\nproperty double vz\n";
 
-/// Triangles with the right-hand normal towards the front, and labels where the scene is a frame.
-#[derive(Clone, Debug, Default)]
-pub struct TestMesh {
-    pub positions: Vec<DVec3>,
-    pub triangles: Vec<[u32; 3]>,
-}
-
-/// Two triangles. The normal points along `edge1` x `edge2`.
-pub fn parallelogram(corner: DVec3, edge1: DVec3, edge2: DVec3) -> TestMesh {
-    TestMesh {
-        positions: vec![corner, corner + edge1, corner + edge1 + edge2, corner + edge2],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-    }
-}
-
-/// A closed box, normals outwards, with shared vertices.
-pub fn cuboid(min: DVec3, max: DVec3) -> TestMesh {
-    let pick = |i: u32, axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
-    let positions = (0..8).map(|i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2))).collect();
-    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TestMesh { positions, triangles }
-}
-
-/// An octahedron subdivided `levels` times, vertices on the sphere, normals outwards.
-pub fn sphere(centre: DVec3, radius: f64, levels: u32) -> TestMesh {
-    let mut positions = vec![DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
-    let mut triangles: Vec<[u32; 3]> =
-        vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
-    for _ in 0..levels {
-        let mut midpoints = BTreeMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *midpoints.entry((a.min(b), a.max(b))).or_insert_with(|| {
-                positions.push((positions[a as usize] + positions[b as usize]).normalize());
-                positions.len() as u32 - 1
-            })
-        };
-        let mut finer = Vec::new();
-        for [a, b, c] in triangles {
-            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
-        }
-        triangles = finer;
-    }
-    for p in &mut positions {
-        *p = centre + *p * radius;
-    }
-    TestMesh { positions, triangles }
-}
-
-impl TestMesh {
-    /// The same surface seen from the other side.
-    #[must_use]
-    pub fn turned(mut self) -> Self {
-        for t in &mut self.triangles {
-            t.swap(1, 2);
-        }
-        self
-    }
-
+/// What moves a mesh.
+pub trait Moving {
     /// The same mesh some time later.
     #[must_use]
-    pub fn moved(mut self, velocity: impl Fn(DVec3) -> DVec3, seconds: f64) -> Self {
+    fn moved(self, velocity: impl Fn(DVec3) -> DVec3, seconds: f64) -> Self;
+    /// The text of an ASCII PLY file with the velocities of the vertices.
+    fn moving_ply(&self, velocity: impl Fn(DVec3) -> DVec3) -> String;
+}
+
+impl Moving for TestMesh {
+    fn moved(mut self, velocity: impl Fn(DVec3) -> DVec3, seconds: f64) -> Self {
         for p in &mut self.positions {
             *p += velocity(*p) * seconds;
         }
         self
     }
 
-    /// The text of an ASCII PLY file with the velocities of the vertices.
-    pub fn moving_ply(&self, velocity: impl Fn(DVec3) -> DVec3) -> String {
+    fn moving_ply(&self, velocity: impl Fn(DVec3) -> DVec3) -> String {
         let declared = "property double z\n";
         let text = self.ply().replacen(declared, &format!("{declared}{}", VELOCITY), 1);
         let vertex = |(i, line): (usize, &str)| match i
@@ -93,22 +38,5 @@ impl TestMesh {
             None => format!("{line}\n"),
         };
         text.lines().enumerate().map(vertex).collect()
-    }
-
-    /// The text of an ASCII PLY file.
-    pub fn ply(&self) -> String {
-        let mut text = format!(
-            "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
-             element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-            self.positions.len(),
-            self.triangles.len()
-        );
-        for p in &self.positions {
-            let _ = writeln!(text, "{} {} {}", p.x, p.y, p.z);
-        }
-        for [a, b, c] in &self.triangles {
-            let _ = writeln!(text, "3 {a} {b} {c}");
-        }
-        text
     }
 }

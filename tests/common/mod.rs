@@ -1,7 +1,7 @@
 //! What the tests of light transport share: scenes made on the spot, renders through the library, statistics.
 
 // Each test file is a crate of its own and uses a part of this one.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 pub mod mesh;
 pub mod numbers;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::common::mesh::{TestMesh, cuboid, parallelogram, sphere};
+use crate::common::mesh::{Moving, TestMesh, cuboid, parallelogram, sphere};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::common::mesh::cuboid;
+use crate::common::mesh::{Moving, cuboid};
 use crate::common::scene::SceneFolder;
 
 const DARK: &str = "[media.ink]\nabsorption = 2000\n[sky]\nradiance = 1\n";

@@ -3,7 +3,7 @@
 use floe::sampling::SampleSeed;
 use glam::DVec3;
 
-use crate::common::mesh::{TestMesh, cuboid, parallelogram, sphere};
+use crate::common::mesh::{Moving, TestMesh, cuboid, parallelogram, sphere};
 use crate::common::numbers::SplitMix;
 use crate::common::render::{Prepared, Rendered};
 use crate::common::scene::SceneFolder;

@@ -7,7 +7,7 @@ use floe::scene::camera::Camera;
 use floe::sequence::FrameNumber;
 use glam::{DVec3, Vec2};
 
-use crate::common::mesh::sphere;
+use crate::common::mesh::{Moving, sphere};
 use crate::small::Folder;
 
 const FPS: f64 = 30.0;
