@@ -1,9 +1,10 @@
-//! What the machine offers and the language does not check: wide registers, memory that need not be cleared, large pages.
-//! All `unsafe` code of the crate is in this file.
+//! What the machine offers and the language does not check: wide registers, memory that need not be cleared, large
+//! pages. All `unsafe` code of the crate is in this file.
 //!
-//! Traversal and random walks are written once over [`Lanes`] and compiled twice: for any machine, and for those with AVX2
-//! and FMA, which [`with_best`] recognises at run time. Box tests are conservative however they round; all else does the
-//! same operations in the same order in either, none of them fused. So both give the same results to the last bit.
+//! Traversal and random walks are written once over [`Lanes`] and compiled twice: for any machine, and for those with
+//! AVX2 and FMA, which [`with_best`] recognises at run time. Box tests are conservative however they round; all else
+//! does the same operations in the same order in either, none of them fused. So both give the same results to the last
+//! bit.
 #![allow(unsafe_code)]
 
 use std::mem::MaybeUninit;
@@ -26,7 +27,9 @@ pub(crate) trait Lanes: Copy {
     fn mul(self, other: Self) -> Self;
     /// `self * factor + term`, rounded once or twice.
     fn scaled(self, factor: Self, term: Self) -> Self;
+    /// The lesser; the other where either is no number.
     fn min(self, other: Self) -> Self;
+    /// The greater; the other where either is no number.
     fn max(self, other: Self) -> Self;
     /// A bit for each lane in which this is at most the other.
     fn at_most(self, other: Self) -> u32;
@@ -34,25 +37,26 @@ pub(crate) trait Lanes: Copy {
     fn pick(self, from: &[u8; 8]) -> Self;
     fn div(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
-    /// The least of all lanes and a number.
+    /// The least of a number and of all lanes that are numbers.
     #[inline(always)]
     fn least_below(self, number: f32) -> f32 {
         if self.at_most(Self::splat(number)) == 0 {
             return number;
         }
-        let halves = self.min(self.pick(&[4, 5, 6, 7, 0, 1, 2, 3]));
+        let lanes = self.min(Self::splat(number));
+        let halves = lanes.min(lanes.pick(&[4, 5, 6, 7, 0, 1, 2, 3]));
         let quarters = halves.min(halves.pick(&[2, 3, 0, 1, 0, 1, 2, 3]));
         let mut all = Eight([0.0; 8]);
         quarters.store(&mut all);
-        number.min(all.0[0]).min(all.0[1])
+        all.0[0].min(all.0[1])
     }
-    /// In each lane the first where the sign of this is negative, else the second.
+    /// In each lane the first where the sign bit of this is set, as that of -0 is, else the second.
     fn negative(self, first: Self, second: Self) -> Self;
     /// `first` and all lanes but the last.
     fn preceded_by(self, first: f32) -> Self;
     /// Sums of the lanes up to each: of pairs first, then of fours.
     fn running_sums(self) -> Self;
-    /// The whole numbers towards zero.
+    /// The whole numbers towards zero, of numbers between -2^31 and 2^31: what others become depends on the machine.
     fn truncated(self) -> Self::Words;
     fn to_bits(self) -> Self::Words;
 }
@@ -114,7 +118,7 @@ impl Word for u32 {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Avx2;
+use avx2::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
@@ -125,10 +129,11 @@ mod avx2 {
     /// Lanes of an AVX2 register.
     ///
     /// Invariant: values are made only within functions that have the features `avx2` and `fma` enabled, which
-    /// [`super::with_best`] calls only on machines that have them. Every intrinsic below rests on that alone,
-    /// but for the loads and stores, whose pointers come from references to aligned arrays of the right size.
+    /// [`super::with_best`] calls only on machines that have them; no other module can name the type. Every intrinsic
+    /// below rests on that alone, but for the loads and stores, whose pointers come from references to aligned arrays
+    /// of the right size.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx2(__m256);
+    pub(super) struct Avx2(__m256);
 
     impl Lanes for Avx2 {
         type Words = Avx2Words;
@@ -240,7 +245,7 @@ mod avx2 {
 
     /// Whole numbers in such a register, under the same invariant.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx2Words(__m256i);
+    pub(super) struct Avx2Words(__m256i);
 
     impl Word for Avx2Words {
         #[inline(always)]
@@ -372,7 +377,8 @@ pub(crate) fn on_large_pages<T>(array: &[T]) {
         let bytes = array.as_ptr().cast::<u8>();
         let before = bytes.align_offset(PAGE);
         let whole = size_of_val(array).saturating_sub(before) / PAGE * PAGE;
-        // The range lies within the array, and the call changes no byte of it. Where the system cannot, all stays as it is.
+        // The range lies within the array, and the call changes no byte of it. Where the system cannot, all stays as
+        // it is.
         unsafe { libc::madvise(bytes.wrapping_add(before).cast_mut().cast(), whole, libc::MADV_COLLAPSE) };
     }
 }

@@ -64,12 +64,13 @@ impl Lanes for Portable {
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        self.zip(other, Vec4::min)
+        // Those of glam let a lane that is no number win on some machines and lose on others.
+        self.zip(other, |a, b| Vec4::select(a.cmplt(b), a, b))
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, Vec4::max)
+        self.zip(other, |a, b| Vec4::select(a.cmpgt(b), a, b))
     }
 
     #[inline(always)]
@@ -114,7 +115,8 @@ impl Lanes for Portable {
             let pairs = four + Vec4::new(0.0, four.x, four.y, four.z);
             pairs + Vec4::new(0.0, 0.0, pairs.x, pairs.y)
         });
-        Self([low, high + low.w])
+        // Nothing is added to the low ones, which makes 0 of -0.
+        Self([low + Vec4::ZERO, high + low.w])
     }
 
     #[inline(always)]
@@ -202,5 +204,104 @@ impl Words for PortableWords {
     #[inline(always)]
     fn as_bits(self) -> Portable {
         Portable::load(&Eight(self.0.map(f32::from_bits)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::machine::{WithLanes, with_best};
+    use super::*;
+
+    /// What becomes of eight numbers and eight others: bits by the names of functions.
+    struct All([f32; 8], [f32; 8]);
+
+    impl WithLanes for All {
+        type Output = Vec<(&'static str, [u32; 8])>;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let (x, y) = (L::load(&Eight(self.0)), L::load(&Eight(self.1)));
+            let most = L::splat(2_147_483_520.0);
+            let representable = x.max(L::splat(0.0).sub(most)).min(most);
+            vec![
+                ("min", bits(x.min(y))),
+                ("max", bits(x.max(y))),
+                ("at_most", [x.at_most(y); 8]),
+                ("pick", bits(x.pick(&[7, 2, 2, 0, 1, 6, 5, 12]))),
+                ("least_below", [(x.least_below(LIMIT) + 0.0).to_bits(); 8]),
+                ("negative", bits(x.negative(y, L::splat(3.0)))),
+                ("preceded_by", bits(x.preceded_by(-4.0))),
+                ("running_sums", bits(x.running_sums())),
+                ("truncated", bits(representable.truncated().signed_value())),
+            ]
+        }
+    }
+
+    const LIMIT: f32 = 5.0;
+
+    /// Which bits stand for what is no number depends on the order of a sum's terms.
+    fn bits(lanes: impl Lanes) -> [u32; 8] {
+        let mut all = Eight([0.0; 8]);
+        lanes.store(&mut all);
+        all.0.map(|x| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() })
+    }
+
+    fn assert_same(x: [f32; 8], y: [f32; 8]) {
+        let portable = All(x, y).run::<Portable>();
+        assert_eq!(with_best(All(x, y)), portable, "{x:?} {y:?}");
+        // And they are what the names say.
+        let of = |name: &str| {
+            portable.iter().find(|(of, _)| *of == name).map(|(_, bits)| bits.map(f32::from_bits))
+        };
+        let least = x.into_iter().fold(LIMIT, f32::min);
+        assert_eq!(of("least_below").map(|all| all[0]), Some(least), "{x:?}");
+        let lesser = std::array::from_fn(|i| bits_of(if x[i] < y[i] { x[i] } else { y[i] }));
+        let greater = std::array::from_fn(|i| bits_of(if x[i] > y[i] { x[i] } else { y[i] }));
+        let chosen = std::array::from_fn(|i| bits_of(if x[i].is_sign_negative() { y[i] } else { 3.0 }));
+        let before = std::array::from_fn(|i| bits_of(if i == 0 { -4.0 } else { x[i - 1] }));
+        let picked = [7, 2, 2, 0, 1, 6, 5, 4].map(|i: usize| bits_of(x[i]));
+        for (name, expected) in [
+            ("min", lesser),
+            ("max", greater),
+            ("negative", chosen),
+            ("preceded_by", before),
+            ("pick", picked),
+        ] {
+            assert_eq!(of(name).map(|all| all.map(f32::to_bits)), Some(expected), "{name} {x:?} {y:?}");
+        }
+    }
+
+    fn bits_of(x: f32) -> u32 {
+        bits(Portable::splat(x))[0]
+    }
+
+    #[test]
+    fn zeros_with_signs_and_lanes_without_numbers_are_the_same_on_all_machines() {
+        assert_same([-0.0; 8], [0.0; 8]);
+        assert_same([0.0; 8], [-0.0; 8]);
+        assert_same([f32::NAN; 8], [1.0; 8]);
+        assert_same([1.0; 8], [-f32::NAN; 8]);
+        for lane in 0..8 {
+            // One number, which no other lane may hide; and one that is none, in turn.
+            assert_same(std::array::from_fn(|i| if i == lane { 0.5 } else { f32::NAN }), [1.0; 8]);
+            assert_same(std::array::from_fn(|i| if i == lane { -f32::NAN } else { i as f32 }), [1.0; 8]);
+        }
+    }
+
+    fn number() -> impl Strategy<Value = f32> {
+        let special =
+            [0.0, -0.0, 1.0, -1.0, 1e-40, 3e9, f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+        prop_oneof![2 => -10.0_f32..10.0, 1 => prop::sample::select(special.to_vec())]
+    }
+
+    proptest! {
+        #[test]
+        fn lanes_are_the_same_on_all_machines(
+            x in prop::array::uniform8(number()), y in prop::array::uniform8(number()),
+        ) {
+            assert_same(x, y);
+        }
     }
 }

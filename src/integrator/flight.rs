@@ -19,7 +19,8 @@ use crate::spectrum::Lanes;
 /// Sheets within a rounding error of each other that a path looks through for the one it has jumped over.
 const MOST_SHEETS: u32 = 4;
 
-/// A ball without surfaces around a path in a medium that scatters: while the path stays in it nothing has to be traced.
+/// A ball without surfaces around a path in a medium that scatters: while the path stays in it nothing has to be
+/// traced.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clearing {
     centre: Vec3,
@@ -51,9 +52,10 @@ impl Clearing {
         self.radius > 0.0 && point.distance_squared(self.centre) < self.radius * self.radius
     }
 
-    /// How many of eight points, by axis, lie in the ball before the first that does not.
+    /// How many of eight points, by axis, lie in the ball before the first that does not. There must be a ball.
     #[inline(always)]
     pub(super) fn holds_first<L: Wide>(&self, points: &[L; 3]) -> usize {
+        debug_assert!(self.is_there());
         let x = points[0].sub(L::splat(self.centre.x));
         let y = points[1].sub(L::splat(self.centre.y));
         let z = points[2].sub(L::splat(self.centre.z));
@@ -67,8 +69,8 @@ impl Clearing {
         self.radius > 0.0
     }
 
-    /// The path has collided at a point outside of the ball. Tells the probability with which it should go on: less than 1
-    /// where it is farther than before from all there is, measured by how wide that is, in a medium without end.
+    /// The path has collided at a point outside of the ball. Tells the probability with which it should go on: less
+    /// than 1 where it is farther than before from all there is, measured by how wide that is, in a medium without end.
     #[inline]
     pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) -> f32 {
         self.radius = -1.0;
@@ -233,10 +235,10 @@ impl Sample<'_> {
     /// The surface that the path meets next.
     ///
     /// A ray that leaves an interface starts at the very point, so that it cannot jump over a sheet in the wedge where
-    /// several meet. Rounding may put the point on the wrong side of a neighbour, or the ray on the wrong side of an edge,
-    /// and at the edges of wedges it decides which sheet seems nearest; the labels tell which is meant. One that does
-    /// not belong to the path's medium is looked through where rounding alone may have made it be met, and gives way
-    /// elsewhere to one that does belong and is as far away.
+    /// several meet. Rounding may put the point on the wrong side of a neighbour, or the ray on the wrong side of an
+    /// edge, and at the edges of wedges it decides which sheet seems nearest; the labels tell which is meant. One that
+    /// does not belong to the path's medium is looked through where rounding alone may have made it be met, and gives
+    /// way elsewhere to one that does belong and is as far away.
     pub(super) fn nearest(&mut self, branch: &Branch, ray: &Ray) -> Option<Hit> {
         self.scratch.counters.rays += 1;
         let (mut from, mut passed) = (*ray, 0.0);
@@ -264,7 +266,8 @@ impl Sample<'_> {
         found.map(|hit| Hit { t: passed + hit.t, ..hit })
     }
 
-    /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for rounding.
+    /// True when a ray begins on the plane of the triangle that it meets at `t`, or meets it at an edge, but for
+    /// rounding.
     pub(super) fn is_met_by_rounding(&self, ray: &Ray, t: f32, hit: &Hit) -> bool {
         let slack = 4.0 * rounding(ray.origin, t);
         // In double precision: the squares of areas leave the range of single precision among lengths that are valid.

@@ -1,8 +1,9 @@
 //! Random walks in a ball without surfaces, where nothing is traced and nothing shines: a loop of its own.
 //!
-//! Where flights and angles depend on nothing that the path has been through, [`super::ahead`] draws several collisions at a
-//! time. Elsewhere each turn draws what [`Sample::fly`] and [`Sample::scatter`] would draw from the same random numbers, keeps
-//! the path in registers and brings directions back to unit length by a step of Newton's method for 1 / sqrt(d . d):
+//! Where flights and angles depend on nothing that the path has been through, [`super::ahead`] draws several collisions
+//! at a time. Elsewhere each turn draws what [`Sample::fly`] and [`Sample::scatter`] would draw from the same random
+//! numbers, keeps the path in registers and brings directions back to unit length by a step of Newton's method for 1 /
+//! sqrt(d . d):
 //!
 //! ```text
 //! d' = d (3 - d . d) / 2,   |d'| - 1 = -3/2 (|d| - 1)^2

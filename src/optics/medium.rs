@@ -212,14 +212,16 @@ impl MediumLanes {
         if pdf_d > 0.0 { self.sigma_s * transmittance / pdf_d } else { Lanes::ZERO }
     }
 
-    /// Distance of a free flight at u on average, in metres, and the weight of a collision at its end but for
-    /// [`MediumLanes::relative_transmittance`]; of nearly grey media only.
+    /// Of nearly grey media only: 1 over what flights are drawn with, in metres, and the weight of a collision but for
+    /// [`MediumLanes::relative_transmittance`]. Flights of all lanes are drawn with the least extinction of them, or with
+    /// the least scattering where next to nothing is absorbed.
     #[inline]
     pub fn grey(&self) -> Option<(f32, Lanes)> {
         self.grey.then_some((self.mean_free_path, self.albedo))
     }
 
-    /// exp(-(sigma_t - least sigma_t) d) of nearly grey media.
+    /// exp(-(sigma_t - sigma_f) d) of nearly grey media, sigma_f being what flights are drawn with: what is absorbed on
+    /// the way is part of it where that is the least scattering.
     #[inline]
     pub fn relative_transmittance(&self, distance: f32) -> Lanes {
         /// The first term of the series that is left out is x^4 / 24: 7e-9.

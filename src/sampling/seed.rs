@@ -120,7 +120,7 @@ impl SampleStream {
 
     /// Takes so many sets.
     #[inline(always)]
-    pub fn skip(&mut self, sets: usize) {
+    pub(crate) fn skip(&mut self, sets: usize) {
         self.set += sets as u32;
     }
 

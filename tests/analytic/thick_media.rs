@@ -1,6 +1,7 @@
 //! Media so thick that paths collide thousands of times.
 
 use floe::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
+use floe::spectrum::Wavelengths;
 use glam::DVec3;
 
 use super::estimates::assert_mean;
@@ -74,26 +75,59 @@ fn a_thick_layer_transmits_what_milne_says() {
 }
 
 /// The ball in which nothing is traced changes neither what comes back from a layer of optical depth 1000 nor what gets
-/// through one that lets some light through.
+/// through one that lets some light through, nor how many paths end at the scene's `max_depth`.
 #[test]
 fn walks_in_balls_agree_with_walks_of_which_every_flight_is_traced() {
-    for (medium, view, samples) in [
-        ("scattering = 999\nabsorption = 1", ABOVE, 64),
-        ("scattering = [24, 22, 20]\nabsorption = [0.01, 0.1, 0.3]", BELOW, 512),
-        (
-            "ior = 1.31\nscattering = 87\nabsorption = [0.3, 0.05, 0.005]\n\
-             phase = { kind = \"henyey-greenstein\", g = 0.86 }",
-            ABOVE,
-            128,
-        ),
+    const FORWARD: &str = "phase = { kind = \"henyey-greenstein\", g = 0.86 }";
+    let grey = format!("ior = 1.31\nscattering = 87\nabsorption = [0.08, 0.05, 0.005]\n{FORWARD}");
+    let coloured = format!("ior = 1.31\nscattering = 87\nabsorption = [0.3, 0.05, 0.005]\n{FORWARD}");
+    for (medium, is_grey, max_depth, view, samples) in [
+        ("scattering = 999\nabsorption = 1", true, 0, ABOVE, 64),
+        ("scattering = 300", true, 20, ABOVE, 128),
+        ("scattering = [24, 22, 20]\nabsorption = [0.01, 0.1, 0.3]", false, 0, BELOW, 512),
+        (&grey, true, 0, ABOVE, 128),
+        (&coloured, false, 0, ABOVE, 128),
     ] {
-        let mut scene =
-            tray().scene(&format!("[media.milk]\n{medium}\n{LAYER}{TRAY}{view}resolution = [16, 16]\n"));
+        let mut scene = tray().scene(&format!(
+            "[media.milk]\n{medium}\n{LAYER}{TRAY}{view}resolution = [16, 16]\n[render]\nmax_depth = {max_depth}\n"
+        ));
+        let milk = scene.frame.media.iter().find(|medium| medium.name == "milk");
+        let drawn_ahead = milk.is_some_and(|milk| milk.lanes(&Wavelengths::RGB).grey().is_some());
+        assert_eq!(drawn_ahead, is_grey, "{medium}");
         let balls = scene.render(samples, 0);
         trace_every_flight(&mut scene);
         let plain = scene.render(samples, 1);
-        assert!(balls.counters.untraced > balls.counters.rays / 2 && plain.counters.untraced == 0);
+        assert!(balls.counters.untraced > balls.counters.rays / 3 && plain.counters.untraced == 0);
+        // Each path is one that ends so or is not: the variances of the two numbers are at most the numbers.
+        let [ended, others] = [&balls, &plain].map(|picture| picture.counters.depth_limited as f64);
+        assert!((ended - others).abs() <= 5.0 * (ended + others).sqrt(), "{medium}: {ended} {others}");
+        assert_eq!(ended > 0.0, max_depth > 0);
         assert_same_mean(medium, &balls, &plain, 0.06);
+    }
+}
+
+/// Half a metre deep, where nothing comes out after so few collisions: each path flies to all that it may turn at and
+/// to the one at which it ends, however many of these flights are drawn at a time.
+#[test]
+fn walks_in_balls_end_at_the_depth_that_was_asked_for() {
+    let within =
+        "[camera]\neye = [0.3, 0.2, -0.5]\ntarget = [0.3, 0.2, 0]\nup = [0, 1, 0]\nvertical_fov = 1\n";
+    for (phase, max_depth) in [("isotropic", 20), ("isotropic", 21), ("rayleigh", 25), ("rayleigh", 100)] {
+        let mut scene = tray().scene(&format!(
+            "[media.milk]\nscattering = 3000\nphase = {{ kind = \"{phase}\" }}\n{LAYER}{TRAY}{within}\
+             resolution = [16, 16]\n[render]\nmax_depth = {max_depth}\n"
+        ));
+        let balls = scene.render(4, 0).counters;
+        assert!(balls.untraced > 2 * balls.rays, "{balls:?}");
+        trace_every_flight(&mut scene);
+        for counters in [balls, scene.render(4, 0).counters] {
+            assert_eq!(counters.depth_limited, 4 * 256, "{max_depth}: {counters:?}");
+            assert_eq!(
+                counters.rays + counters.untraced,
+                4 * 256 * (max_depth + 1),
+                "{max_depth}: {counters:?}"
+            );
+        }
     }
 }
 

@@ -123,10 +123,10 @@ trait Lobe {
         self.table().map_or_else(|| self.value(deflection), |table| table.pdf_w(deflection))
     }
 
-    /// Value over the density `pdf_w`.
+    /// Value over the density `pdf_w`; where both are 0, as straight on from some spheres, what it goes to.
     #[inline]
     fn weight(&self, deflection: Deflection, pdf_w: f32) -> f32 {
-        self.table().map_or(1.0, |_| self.value(deflection) / pdf_w)
+        if self.table().is_some() && pdf_w > 0.0 { self.value(deflection) / pdf_w } else { 1.0 }
     }
 
     /// An angle with its weight.
@@ -203,8 +203,8 @@ impl PhaseFunction {
         PhaseSample { wi, weight, pdf_w }
     }
 
-    /// Direction and weight as of [`PhaseFunction::sample`], whose density is not asked for, but for the rounding of the
-    /// direction's length.
+    /// Direction and weight as of [`PhaseFunction::sample`], whose density is not asked for, but for the rounding of
+    /// the direction's length.
     #[inline]
     pub fn turn(&self, forward: Vec3, u: [f32; 2]) -> (Vec3, f32) {
         let (deflection, weight) = match self {
@@ -266,5 +266,46 @@ impl PhaseFunction {
     #[inline(never)]
     fn any_sampled(&self, u: f32) -> (Deflection, f32, f32) {
         each!(self, lobe => lobe.sampled(u))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::machine::{WithLanes, with_best};
+    use crate::geometry::portable::Portable;
+
+    struct Angles<'a>(&'a PhaseFunction, [f32; 8]);
+
+    impl WithLanes for Angles<'_> {
+        type Output = [[f32; 8]; 3];
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let (cos, sin, weights) = self.0.eight(L::load(&Eight(self.1)));
+            [cos, sin, weights].map(|lanes| {
+                let mut all = Eight([0.0; 8]);
+                lanes.store(&mut all);
+                all.0
+            })
+        }
+    }
+
+    #[test]
+    fn eight_angles_and_weights_are_those_of_each_number() {
+        let mut weighted = 0;
+        for (name, phase) in EXAMPLES.iter() {
+            for i in (0..1 << 24).step_by(8 * 9973).chain([(1 << 24) - 8]) {
+                let u: [f32; 8] = std::array::from_fn(|k| (i + k) as f32 / 16_777_216.0);
+                let one = u.map(|u| phase.any_weighted(u));
+                let alone = [one.map(|(d, _)| d.cosine()), one.map(|(d, _)| d.sine()), one.map(|(_, w)| w)];
+                assert_eq!(with_best(Angles(phase, u)), alone, "{name} {u:?}");
+                assert_eq!(Angles(phase, u).run::<Portable>(), alone, "{name} {u:?}");
+                let sampled = u.map(|u| phase.sample(Vec3::Z, [u, 0.0]).weight);
+                assert_eq!(sampled, alone[2], "{name} {u:?}");
+                weighted += alone[2].iter().filter(|&&weight| weight != 1.0).count();
+            }
+        }
+        assert!(weighted > 0);
     }
 }
