@@ -207,7 +207,7 @@ impl<'a> Session<'a> {
             self.observer.warning(&text);
             record.warnings.push(text);
         }
-        if counters.too_many_mismatches() {
+        if counters.too_many_mismatches(assembled.frame.roughness) {
             let (mismatches, rays) = (counters.label_mismatches, counters.rays);
             let scene = &self.job.world.description.file;
             let path = task.files.first().unwrap_or(scene).clone();

@@ -453,9 +453,15 @@ impl Branch {
     #[inline]
     pub(super) fn wander_off(&mut self, survival: f32) {
         if survival < 1.0 {
-            let survives = self.stream.next4()[0] < survival;
-            self.throughput *= if survives { survival.recip() } else { 0.0 };
+            let u = self.stream.next4()[0];
+            self.keep(survival, u);
         }
+    }
+
+    /// Leaves no throughput, or that of all whose `u` is not below the probability.
+    pub(super) fn keep(&mut self, survival: f32, u: f32) {
+        let survival = at_random(survival);
+        self.throughput *= if u < survival { survival.recip() } else { 0.0 };
     }
 
     /// False where the path has to be cut.

@@ -41,6 +41,17 @@ mod tests {
             let ratio = mean / f64::from(throughput);
             assert!((ratio - 1.0).abs() < 1.3e-4, "{throughput}: {ratio}");
         }
+        // A path in thin air may be 1e9 widths of all there is away at once.
+        for survival in [1e-4, 3e-5, 1.1e-6, 1e-9] {
+            let stream = SampleStream::new(SampleSeed::new(0), 0, 0, 0);
+            let kept = (0..1 << 14).map(|i| {
+                let mut branch = Branch::new(Vec3::ZERO, Vec3::X, stream);
+                branch.keep(survival, i as f32 / 16_777_216.0);
+                f64::from(branch.throughput.x)
+            });
+            let mean = kept.sum::<f64>() / 16_777_216.0;
+            assert!((mean - 1.0).abs() < 1.3e-4, "{survival}: {mean}");
+        }
         let nothing = Branch {
             throughput: Lanes::ZERO,
             ..Branch::new(Vec3::ZERO, Vec3::X, SampleStream::new(SampleSeed::new(0), 0, 0, 0))

@@ -16,8 +16,10 @@ use super::inputs::Inputs;
 use super::layers::Layers;
 use super::needs::Needs;
 use super::parts::{Parts, Placed};
+use super::resolution;
 use super::surface::{MediumPair, Surface, SurfaceId};
 use super::thick::{self, Reduced};
+use super::thickness::thickness;
 use super::world::World;
 use crate::accel::{Accel, Connectivity, Update};
 use crate::geometry::Bounds;
@@ -281,6 +283,8 @@ impl<'a> Assembly<'a> {
         let (half_spaces, reflected) = self.half_spaces(&media, medium_at);
         let reduced = self.reduce(&mut media);
         let led = self.led(&media);
+        let roughness =
+            resolution::roughness(&media, &self.parts.geometry, &self.parts.surfaces, &accel.bounds());
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -322,6 +326,7 @@ impl<'a> Assembly<'a> {
                 beneath,
                 led,
                 half_spaces,
+                roughness,
                 geometry: self.parts.geometry,
                 surfaces: self.parts.surfaces,
                 layers,
@@ -362,7 +367,9 @@ impl<'a> Assembly<'a> {
             let near: Vec<u32> = self.emitting().filter(near).take(MOST_ASKED + 1).collect();
             near.len() > MOST_ASKED || near.into_iter().any(|triangle| medium_at(self.before(triangle)) == id)
         };
-        half_spaces::half_spaces(media, |id| thick::bounds_of(id, geometry, surfaces), holds_light)
+        let bounds = |id| thick::bounds_of(id, geometry, surfaces);
+        let thickness = |id, bounds: &Bounds| thickness(id, geometry, surfaces, bounds);
+        half_spaces::half_spaces(media, bounds, thickness, holds_light)
     }
 
     fn led(&self, media: &[Medium]) -> Vec<bool> {

@@ -37,6 +37,8 @@ pub struct Frame {
     pub led: Vec<bool>,
     /// What is seen of media that are too thick to walk through ([`super::half_spaces`]), by [`MediumId`]; empty without any.
     pub half_spaces: Vec<Option<HalfSpace>>,
+    /// The rounding of coordinates over the free path, the greatest of all media that scatter; 0 where it does not matter.
+    pub roughness: f32,
     /// All triangles.
     pub geometry: Geometry,
     /// What triangles are, by [`super::surface::SurfaceId`].

@@ -20,8 +20,10 @@ pub mod layers;
 mod motion;
 pub mod needs;
 mod parts;
+mod resolution;
 pub mod surface;
 pub mod thick;
+mod thickness;
 pub mod world;
 
 pub use error::FrameError;

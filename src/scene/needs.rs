@@ -158,7 +158,7 @@ impl Needs {
                 if self.half_spaces {
                     "a medium is too thick to walk through: light leaves it where it came in"
                 } else {
-                    "no medium has an optical size above 100,000, or it is walked through all the same"
+                    "no medium has an optical size above 100,000 or free paths that coordinates cannot tell, or it is walked through all the same"
                 },
             ),
         ]

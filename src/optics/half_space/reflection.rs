@@ -99,7 +99,9 @@ impl Reflection {
         let h = |x: f32| self.table.in_lane(rest, x);
         let mu0 = Incidence::new(rest, self.mu).draw(u, stream, h);
         let value = self.value(mu0);
-        Some((mu0, value * (whole / throughput.dot(value))))
+        // The table is 1 but for its rounding where nothing is scattered: what is reflected there is 0, and R may not be.
+        let own = throughput.dot(value);
+        (own > 0.0).then(|| (mu0, value * (whole / own)))
     }
 }
 
@@ -164,6 +166,8 @@ mod tests {
             }
         }
         let mut stream = SampleStream::new(SampleSeed::new(1), 0, 0, 0);
-        assert!(along(0.5).sample(Vec4::W, 0.5, &mut stream).is_none());
+        for mu in (0..=1000).map(|i| i as f32 / 1000.0) {
+            assert!(along(mu).sample(Vec4::W, 0.5, &mut stream).is_none(), "mu {mu}: nothing is reflected");
+        }
     }
 }

@@ -113,7 +113,7 @@ fn tells(wrong: &Wrong, media: &str) -> Result<Measurement, StudyError> {
     let picture = render(&prepared);
     let measured = told(&prepared.warnings, wrong.warning, true);
     let counters = picture.counters;
-    let is_noticed = counters.too_many_mismatches() || counters.escaped_inside > 8;
+    let is_noticed = counters.too_many_mismatches(prepared.frame.roughness) || counters.escaped_inside > 8;
     let flights = (counters.rays + counters.untraced) as f64 / picture.samples as f64;
     let is_fine = picture.spoilt == Spoilt::default() && flights < MOST_FLIGHTS;
     let got = if is_noticed == wrong.is_counted && is_fine { measured.got } else { 0.0 };
