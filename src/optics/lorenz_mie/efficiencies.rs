@@ -122,6 +122,6 @@ mod tests {
         for alpha in [0.1, 0.3, 0.49999, 0.50001, 1.0, 20.0] {
             assert!((host_factor(alpha) / direct(alpha) - 1.0).abs() < 1e-13, "{alpha}");
         }
-        assert!(host_factor(600.0) > 0.0);
+        assert!(host_factor(300.0) > 0.0);
     }
 }
