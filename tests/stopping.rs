@@ -61,6 +61,7 @@ fn the_error_of_a_frame_that_stopped_is_what_it_says() {
         let (reference, _) = render_pixels(&frame, &plain, &|_, _| ());
         let estimate = estimate_error(&image, 0.95).unwrap();
         let (squared, error) = squared_error(&image, &reference);
+        assert!(estimate.high.is_finite(), "{name}: {estimate:?}");
         // The interval is 1.96 standard errors of the squared estimate to each side.
         let own = (estimate.high.powi(2) - estimate.low.powi(2)) / 2.0 / 1.96;
         let apart = (squared - estimate.relative.powi(2)) / error.hypot(own);

@@ -72,7 +72,8 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
         .filter_map(|r| r.relative_error.map(|e| (e, &r.frame)))
         .max_by(|a, b| a.0.estimate.total_cmp(&b.0.estimate));
     let Some((worst, frame)) = worst else {
-        let unknown = "estimated relative error unknown: it takes at least 2 samples a pixel";
+        let unknown =
+            "estimated relative error unknown: it takes at least 2 samples a pixel, 4 with a target";
         return (!done.is_empty()).then(|| unknown.into());
     };
     let errors: Vec<f64> = done.iter().filter_map(|r| r.relative_error).map(|e| e.estimate).collect();
@@ -82,7 +83,9 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
         true => format!("{:.2} to {:.2} %", percent(worst.low), percent(worst.high)),
         false => format!("at least {:.2} %", percent(worst.low)),
     };
-    let interval = format!("{range} at {:.0} % confidence", percent(worst.confidence));
+    // Two decimals at most, as 99.99 % has.
+    let confidence = (1e4 * worst.confidence).round() / 100.0;
+    let interval = format!("{range} at {confidence} % confidence");
     let effort = effort(done);
     Some(if errors.len() == 1 {
         format!("estimated relative error {:.2} % ({interval}) {effort}", percent(mean))

@@ -264,7 +264,7 @@ impl<'a> Session<'a> {
         let samples = self.settings.samples;
         let Some(ErrorEstimate { relative, high, .. }) = estimate else {
             return Some(format!(
-                "frame {}: with {samples} samples a pixel its error is unknown; let it have 16 at least",
+                "frame {}: with samples = {samples} its error is unknown; let it have 16 at least",
                 record.frame
             ));
         };
@@ -276,12 +276,18 @@ impl<'a> Session<'a> {
                 percent(target)
             ));
         }
-        // The squared error falls as the number of samples grows.
-        let needed = f64::from(samples) * (high / target) * (high / target);
+        let cure = match samples_for(target, high, samples) {
+            None => "so small a target takes more samples than floe can count".into(),
+            Some(needed) => {
+                // Radii that shrink keep some of the noise: photons need more.
+                let is_shrinking = matches!(self.sampling.integrator, Integrator::Photon(_));
+                let about = if is_shrinking { "no fewer than" } else { "about" };
+                format!("{about} {needed} would do: write samples = {needed} into [render] of the scene file")
+            }
+        };
         (high > target).then(|| {
             format!(
-                "frame {}: its error, {} (up to {}), is above the target of {} with all {samples} samples a pixel; \
-                 about {needed:.0} would do: write samples = {needed:.0} into [render] of the scene file",
+                "frame {}: its error, {} (up to {}), is above the target of {} with all {samples} samples a pixel; {cure}",
                 record.frame,
                 percent(relative),
                 percent(high),
@@ -399,8 +405,17 @@ struct Drawn {
     dropped: u64,
 }
 
+/// Samples that bring an error down to a target, as the squared error falls while their number grows; `None` beyond what
+/// may be asked for.
+fn samples_for(target: f64, error: f64, samples: u32) -> Option<u32> {
+    let needed = (f64::from(samples) * (error / target) * (error / target)).ceil();
+    (needed <= f64::from(u32::MAX)).then_some(needed as u32)
+}
+
+/// Down to the smallest target, of 0.0001 %.
 fn percent(part: f64) -> String {
-    format!("{:.3} %", 100.0 * part)
+    let digits = if part < 1e-4 { 5 } else { 3 };
+    format!("{:.digits$} %", 100.0 * part)
 }
 
 fn describe(record: &mut FrameRecord, assembled: &Assembled) {
@@ -421,4 +436,16 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
         format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
     }));
     record.left_out.extend(assembled.reflected.iter().map(ToString::to_string));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_said_to_be_needed_may_be_asked_for() {
+        assert_eq!(samples_for(0.01, 0.02, 64), Some(256));
+        assert_eq!(samples_for(0.01, 0.010_000_01, 64), Some(65));
+        assert_eq!(samples_for(1e-6, 0.5, 64), None);
+    }
 }

@@ -26,7 +26,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::sums::{Features, Replicate, filled, samples, sum_of_squares, variance_of_mean};
+use super::sums::{Features, Replicate, filled, in_range, samples, sum_of_squares, variance_of_mean};
 
 /// Independent replicates of a pixel's samples.
 pub const REPLICATES: usize = crate::sampling::REPLICATES as usize;
@@ -179,12 +179,12 @@ impl PixelAccumulator {
         }
         let n = f64::from(samples);
         let mean = self.replicates.iter().map(|r| r.radiance).sum::<DVec3>() / n;
-        let (variance, deviations) = variance_of_mean(&self.replicates, mean, n).unwrap_or_default();
+        let (channels, deviations) = variance_of_mean(&self.replicates, mean, n).unwrap_or_default();
+        let (variance, luminance_variance) = in_range(channels, sum_of_squares(deviations));
         Pixel {
             rgb: mean.as_vec3(),
-            // A square may leave the range of f32 where its root does not; infinite it would spoil every mean.
-            variance: variance.as_vec3().min(Vec3::MAX),
-            luminance_variance: (sum_of_squares(deviations) as f32).min(f32::MAX),
+            variance,
+            luminance_variance,
             deviations: deviations.map(|d| d as f32),
             samples,
             replicates: filled(&self.replicates).count() as u32,

@@ -28,7 +28,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::accumulate::{FilmSample, Pixel, REPLICATES};
-use super::sums::{Features, Replicate, filled, samples, sum_of_squares, variance_of_mean};
+use super::sums::{Features, Replicate, filled, in_range, samples, sum_of_squares, variance_of_mean};
 
 /// Halves of a pixel.
 pub const HALVES: usize = 2;
@@ -75,10 +75,11 @@ impl HalfSums {
     pub fn foreseen(&self) -> Pixel {
         let Some(Summary { mean, variance, samples }) = self.summary() else { return Pixel::EMPTY };
         let (channels, luminance) = variance.unwrap_or_default();
+        let (variance, luminance_variance) = in_range(channels / HALVES as f64, luminance / HALVES as f64);
         Pixel {
             rgb: mean.as_vec3(),
-            variance: (channels / HALVES as f64).as_vec3(),
-            luminance_variance: (luminance / HALVES as f64) as f32,
+            variance,
+            luminance_variance,
             samples: samples * HALVES as u32,
             replicates: filled(&self.replicates).count() as u32,
             ..Pixel::EMPTY
@@ -132,10 +133,11 @@ pub fn joined(halves: [&HalfSums; HALVES]) -> Pixel {
         return Pixel { rejected: features.rejected, ..Pixel::EMPTY };
     }
     let squared = if is_known { count * count } else { f64::INFINITY };
+    let (variance, luminance_variance) = in_range(channels / squared, luminance / squared);
     Pixel {
         rgb: (mean / count).as_vec3(),
-        variance: (channels / squared).as_vec3(),
-        luminance_variance: (luminance / squared) as f32,
+        variance,
+        luminance_variance,
         samples,
         replicates: if is_known { replicates } else { 1 },
         ..features.pixel(count)
@@ -223,6 +225,19 @@ mod tests {
         assert_eq!(both.samples(), 12);
         let expected = (8.0 * a.foreseen().rgb.x + 4.0 * b.foreseen().rgb.x) / 12.0;
         assert!((both.foreseen().rgb.x - expected).abs() < 1e-6);
+    }
+
+    /// The square of 3e30 is beyond f32, and so would the variance be.
+    #[test]
+    fn variances_end_where_their_numbers_do() {
+        let mut sums = [HalfSums::default(); HALVES];
+        for index in 0..4 {
+            let bright = if index == 1 { 3e30 } else { 0.0 };
+            sums[HalfSums::half_of(index)].add(index, &sample(bright));
+        }
+        for pixel in [joined([&sums[0], &sums[1]]), sums[0].foreseen()] {
+            assert_eq!((pixel.luminance_variance, pixel.variance), (f32::MAX, Vec3::MAX));
+        }
     }
 
     #[test]

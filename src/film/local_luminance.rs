@@ -5,17 +5,21 @@
 //! B = max(S^2 - mean of V, 0)          the part of S^2 that is not noise
 //! k = B / (B + V)
 //! L = M + k (m - M)                                                                 (1)
-//! Q = k V + (1 - k)^2 (mean of V) / n                                               (2)
+//! Q = k V + (1 - k)^2 W          W = 1 / n^2  max(sum_r (sum of u_r)^2, sum of V)   (2)
 //! ```
 //!
 //! m is the pixel's own luminance and V its variance. (1) is Lee's filter of local statistics `[LEE80]`: where
 //! there is more noise than structure it is the mean of the neighbours, where there is less it is the pixel. Q is the
 //! variance that is left of the true luminance around L: that of a normal one of variance B, given m, and that of M.
+//! W has the sums over the window of what each replicate brings ([equation (2)](super::accumulate)), so errors that
+//! neighbours share, as those of photons, do not cancel in it. Four replicates may cancel by chance, so it is no less than
+//! with independent errors, which is all that is known of pixels without u_r.
 //!
 //! Sums are taken anew for every pixel: those that run along would keep the rounding of the brightest pixel passed.
 
-use super::accumulate::Pixel;
+use super::accumulate::{Pixel, REPLICATES};
 use super::frame_image::FrameImage;
+use super::sums::sum_of_squares;
 use crate::spectrum::luminance::luminance_f64;
 
 /// Pixels to each side of the one in the middle.
@@ -37,6 +41,7 @@ struct Sums {
     luminance: f64,
     squares: f64,
     variance: f64,
+    deviations: [f64; REPLICATES],
 }
 
 impl Sums {
@@ -46,7 +51,8 @@ impl Sums {
         }
         let luminance = luminance_f64(pixel.rgb.as_dvec3());
         let variance = f64::from(pixel.luminance_variance);
-        Self { count: 1.0, luminance, squares: luminance * luminance, variance }
+        let deviations = pixel.deviations.map(f64::from);
+        Self { count: 1.0, luminance, squares: luminance * luminance, variance, deviations }
     }
 
     fn plus(self, other: Self) -> Self {
@@ -55,7 +61,13 @@ impl Sums {
             luminance: self.luminance + other.luminance,
             squares: self.squares + other.squares,
             variance: self.variance + other.variance,
+            deviations: std::array::from_fn(|r| self.deviations[r] + other.deviations[r]),
         }
+    }
+
+    /// W of (2).
+    fn variance_of_mean(&self) -> f64 {
+        sum_of_squares(self.deviations).max(self.variance) / (self.count * self.count)
     }
 
     /// That of a pixel which is among those of the sums.
@@ -68,7 +80,7 @@ impl Sums {
         let k = if own.variance > 0.0 { structure / (structure + own.variance) } else { 1.0 };
         LocalLuminance {
             luminance: mean + k * (own.luminance - mean), // (1)
-            variance: k * own.variance + (1.0 - k) * (1.0 - k) * noise / self.count, // (2)
+            variance: k * own.variance + (1.0 - k) * (1.0 - k) * self.variance_of_mean(), // (2)
         }
     }
 }
@@ -146,6 +158,26 @@ mod tests {
             assert!(error < most * most * 1536.0 * 0.01, "{name}: {}", (error / 1536.0).sqrt());
             assert!(ratio.contains(&(error / stated)), "{name}: {error} is said to be {stated}");
         }
+    }
+
+    /// The mean of 25 pixels with one error in common is as uncertain as each; with errors of their own, five times less.
+    #[test]
+    fn an_error_that_neighbours_share_does_not_cancel() {
+        let mut image = FrameImage::new(5, 5);
+        let mut middle = |deviations: &dyn Fn(usize) -> [f32; REPLICATES]| {
+            for (i, p) in image.pixels.iter_mut().enumerate() {
+                *p = Pixel { deviations: deviations(i), ..pixel(1.0, 0.01) };
+            }
+            luminances(&image)[12].variance
+        };
+        let shared = middle(&|_| [0.05, 0.05, -0.05, -0.05]);
+        let own =
+            middle(&|i| if i % 2 == 0 { [0.05, 0.05, -0.05, -0.05] } else { [-0.05, -0.05, 0.05, 0.05] });
+        assert!(
+            (shared / 0.01 - 1.0).abs() < 1e-6 && (own / 0.01 - 1.0 / 25.0).abs() < 1e-6,
+            "{shared} {own}"
+        );
+        assert_eq!(middle(&|_| [0.0; REPLICATES]), own);
     }
 
     #[test]

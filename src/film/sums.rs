@@ -62,6 +62,12 @@ pub(super) fn variance_of_mean(
     Some((channels * scale, luminance.map(|d| d * scale.sqrt()))) // (2)
 }
 
+/// A variance as pictures have it: it may leave the range of f32 where its root does not, and infinite it would spoil
+/// every mean.
+pub(super) fn in_range(channels: DVec3, luminance: f64) -> (Vec3, f32) {
+    (channels.as_vec3().min(Vec3::MAX), (luminance as f32).min(f32::MAX))
+}
+
 /// The variance that deviations make.
 pub(super) fn sum_of_squares(deviations: [f64; REPLICATES]) -> f64 {
     deviations.iter().map(|d| d * d).sum()

@@ -9,20 +9,13 @@ impl Control for Unwatched {}
 /// What a pixel is made of: independent samples of these means.
 #[derive(Clone, Copy)]
 enum Noise {
-    /// 10 times the mean with a probability of a tenth, else nothing: variance 9, relative to the mean squared.
+    /// 10 times the mean with a probability of a tenth, else nothing.
     Rare,
     /// Normal, of a deviation of a quarter of the mean.
     Normal,
 }
 
 impl Noise {
-    fn relative_variance(self) -> f64 {
-        match self {
-            Self::Rare => 9.0,
-            Self::Normal => 1.0 / 16.0,
-        }
-    }
-
     fn sample(self, random: &mut SplitMix) -> f64 {
         match self {
             Self::Rare => 10.0 * f64::from(u8::from(random.uniform() < 0.1)),
@@ -34,8 +27,6 @@ impl Noise {
 /// A frame of noise that has stopped.
 struct Frame {
     accumulation: Accumulation,
-    ladder: Ladder,
-    noise: Noise,
 }
 
 impl Frame {
@@ -60,19 +51,7 @@ impl Frame {
         let target = Target { error, confidence: DEFAULT_CONFIDENCE };
         let rounds = HalfRounds { target, ladder, control: &Unwatched, sample: &sample };
         assert_eq!(rounds.run(&mut accumulation), Some(StoppedBy::Target));
-        Self { accumulation, ladder, noise }
-    }
-
-    /// The true relative error of its picture, in which each half has as many samples as the other says.
-    fn true_error(&self) -> f64 {
-        let tiles = self.accumulation.parts.iter().zip(&self.accumulation.rects);
-        let share = |(part, rect): (&TilePart, &TileRect)| {
-            let of_half = |rung| HALVES as f64 / f64::from(self.ladder.samples(rung));
-            let [a, b] = part.halves.rungs.map(of_half);
-            rect.area() as f64 * self.noise.relative_variance() * (a + b) / 4.0
-        };
-        let squared = tiles.map(share).sum::<f64>() / self.accumulation.pixels() as f64;
-        (squared / (1.0 + LUMINANCE_FLOOR * LUMINANCE_FLOOR)).sqrt()
+        Self { accumulation }
     }
 }
 
@@ -134,15 +113,17 @@ fn halves_that_decide_for_each_other_are_unbiased_and_such_that_decide_for_thems
     assert!(ratio > 4.0 + 4.0 * error, "{ratio} +- {error} alone");
 }
 
-/// 400 intervals of confidence 0.95: 380 +- 4.4 hold the truth. 362 is four deviations below (3e-5), and 398 four above: an
+/// 400 intervals of confidence 0.95 of the error that the very picture has: 380 +- 4.4 hold it. 362 is four deviations below (3e-5), and 398 four above: an
 /// interval that always holds the truth says too little.
 #[test]
 fn intervals_hold_the_true_error_as_often_as_they_say() {
     let mut held = 0;
     for seed in 0..400 {
         let frame = Frame::new(Noise::Normal, [24, 24], 0.03, seed);
-        let estimate = estimate_error(&frame.accumulation.image(), DEFAULT_CONFIDENCE).unwrap();
-        let truth = frame.true_error();
+        let image = frame.accumulation.image();
+        let estimate = estimate_error(&image, DEFAULT_CONFIDENCE).unwrap();
+        let squares = image.pixels.iter().map(|p| (f64::from(p.rgb.x) - 1.0).powi(2)).sum::<f64>();
+        let truth = (squares / image.pixels.len() as f64 / (1.0 + LUMINANCE_FLOOR * LUMINANCE_FLOOR)).sqrt();
         held += i32::from(estimate.low <= truth && truth <= estimate.high);
     }
     assert!((362..398).contains(&held), "{held} of 400 intervals hold the true error");
