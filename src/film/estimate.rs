@@ -15,7 +15,7 @@
 //! ```
 //!
 //! with the variance V_p from R replicates ([`super::accumulate`]) and the luminance L_p from the pixel and its
-//! neighbours ([`super::local_luminance`]). A pixel's own m_p would not do: where a rare bright sample is, V and m are too
+//! neighbours (`local_luminance.rs`). A pixel's own m_p would not do: where a rare bright sample is, V and m are too
 //! large together, and the estimate is far too low.
 //!
 //! With the errors y_r of the replicates, weighted with g^(1/2), and R of one size, the difference is
@@ -98,7 +98,7 @@ impl ErrorEstimate {
             return None;
         } else if self.concentration > CONCENTRATED {
             let share = 100.0 * self.concentration;
-            format!("0.1 % of the pixels carry {share:.0} % of the error (fireflies)")
+            format!("0.1 % of the pixels, one at least, carry {share:.0} % of the error (fireflies)")
         } else if self.vagueness > VAGUE {
             "much of the error is of light that few samples find (fireflies)".into()
         } else {
@@ -341,7 +341,7 @@ mod tests {
         let one = estimate_error(&synthetic(64, 4, one).0, 0.95).unwrap();
         assert!(one.concentration > 0.5 && one.high > 1.5 * one.low, "{one:?}");
         assert_eq!(even.warning(), None);
-        assert!(one.warning().unwrap().starts_with("0.1 % of the pixels carry"), "{one:?}");
+        assert!(one.warning().unwrap().starts_with("0.1 % of the pixels, one at least, carry"), "{one:?}");
         let endless = ErrorEstimate { high: f64::INFINITY, ..one };
         assert!(endless.warning().unwrap().contains("at least"));
         assert_eq!(ErrorEstimate { relative: 0.009, ..one }.warning(), None);

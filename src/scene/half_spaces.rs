@@ -25,7 +25,7 @@ use crate::optics::medium::{Medium, MediumId};
 /// collisions in the mean as it says, and the square of it to the other side.
 pub const WALKED: f32 = 1e5;
 /// The rounding of a coordinate over the free path beyond which walks are given up as well. Where it is 0.01 they are off by 1 to 3 %,
-/// and where it is 0.1 by 9 to 22 % (see [`crate::optics::half_space`]): more than half spaces are.
+/// and where it is 0.1 by 7 to 22 % (see [`crate::optics::half_space`]): more than half spaces are.
 pub const UNRESOLVED: f32 = 1.0 / 16.0;
 /// No medium is a half space that lets a greater share of the light through.
 pub const LOST: f64 = 1e-3;

@@ -16,7 +16,7 @@
 //! noise. FLIP holds it too. (4) and (5) do not depend on the budget where errors fall as (CPU seconds)^(-1/2): they rank
 //! settings. rmse^2 is variance plus the square of what bias does to single pixels.
 //!
-//! * [`reference`] renders the reference, keeps it and takes it again.
+//! * [`reference`](mod@reference) renders the reference, keeps it and takes it again.
 //! * [`bias`](mod@bias) tests the mean of all repeats against it.
 //! * [`point`] is one budget; [`crate::study::statistics`] makes slopes of several.
 //! * [`report`] writes it all down.

@@ -22,7 +22,7 @@ pub(super) struct ConvergenceArguments {
     /// Integrators to compare [default: that of the scene; if that is `auto`, path, and photon where the sun needs it]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     integrators: Vec<String>,
-    /// Settings in place of those of [render], for a series of each integrator: "split = 2, forced_scattering = 1"; may
+    /// Settings in place of those of `[render]`, for a series of each integrator: "split = 2, forced_scattering = 1"; may
     /// be given several times, also as "" for none
     #[arg(long, value_name = "SETTINGS")]
     settings: Vec<String>,
