@@ -280,11 +280,12 @@ impl<'a> Assembly<'a> {
         let starts = views.start_places(camera, accel.is_in_motion(), place_of);
         let medium_at = |point| place_of(point, 0.0).medium;
         let lit = self.lit(medium_at);
-        let (half_spaces, reflected) = self.half_spaces(&media, medium_at);
-        let reduced = self.reduce(&mut media);
-        let led = self.led(&media);
-        let roughness =
-            resolution::roughness(&media, &self.parts.geometry, &self.parts.surfaces, &accel.bounds());
+        let boxes = thick::boxes(&media, geometry, surfaces);
+        let (half_spaces, reflected) = self.half_spaces(&media, &boxes, medium_at);
+        let order = world.description.render.similarity;
+        let reduced = thick::reduce(&mut media, &world.reductions, order, &self.endless, &boxes);
+        let led = thick::led(&media, &self.endless, &boxes);
+        let roughness = resolution::roughness(&media, &boxes);
         let asked = Asked {
             parts: &self.parts,
             media: &media,
@@ -344,17 +345,11 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    fn reduce(&self, media: &mut [Medium]) -> Vec<Reduced> {
-        let Parts { geometry, surfaces, .. } = &self.parts;
-        let order = self.world.description.render.similarity;
-        let extent = |id| thick::least_extent(id, geometry, surfaces);
-        thick::reduce(media, &self.world.reductions, order, &self.endless, extent)
-    }
-
     /// Those of path tracing: photons walk, and other integrators want less than all scattered light.
     fn half_spaces(
         &self,
         media: &[Medium],
+        boxes: &[Bounds],
         medium_at: impl Fn(Vec3) -> MediumId,
     ) -> (Vec<Option<HalfSpace>>, Vec<Reflected>) {
         let integrator = self.world.description.render.integrator;
@@ -367,14 +362,8 @@ impl<'a> Assembly<'a> {
             let near: Vec<u32> = self.emitting().filter(near).take(MOST_ASKED + 1).collect();
             near.len() > MOST_ASKED || near.into_iter().any(|triangle| medium_at(self.before(triangle)) == id)
         };
-        let bounds = |id| thick::bounds_of(id, geometry, surfaces);
         let thickness = |id, bounds: &Bounds| thickness(id, geometry, surfaces, bounds);
-        half_spaces::half_spaces(media, bounds, thickness, holds_light)
-    }
-
-    fn led(&self, media: &[Medium]) -> Vec<bool> {
-        let Parts { geometry, surfaces, .. } = &self.parts;
-        thick::led(media, &self.endless, |id| thick::least_extent(id, geometry, surfaces))
+        half_spaces::half_spaces(media, boxes, thickness, holds_light)
     }
 
     fn area_lights(&self) -> Option<AreaLights> {

@@ -55,27 +55,27 @@ impl fmt::Display for Reflected {
     }
 }
 
-/// The media that are half spaces, by [`MediumId`], and what is to be said about them; both empty without any.
+/// The media that are half spaces, by [`MediumId`] as the `boxes` around them are, and what is to be said about them; both empty without any.
 pub(super) fn half_spaces(
     media: &[Medium],
-    bounds: impl Fn(MediumId) -> Bounds,
+    boxes: &[Bounds],
     thickness: impl Fn(MediumId, &Bounds) -> f32,
     holds_light: impl Fn(MediumId, &Bounds) -> bool,
 ) -> (Vec<Option<HalfSpace>>, Vec<Reflected>) {
     let mut reflected = Vec::new();
     let mut found = vec![None; media.len()];
-    for ((medium, id), half_space) in media.iter().zip((0..).map(MediumId)).zip(&mut found) {
+    let ids = (0..).map(MediumId);
+    for (((medium, bounds), id), half_space) in media.iter().zip(boxes).zip(ids).zip(&mut found) {
         if id == MediumId(0) || medium.sigma_s.is_zero() || medium.glows() || !medium.density.is_homogeneous()
         {
             continue;
         }
-        let bounds = bounds(id);
         let edge = bounds.size().min_element();
-        if thick(medium, &bounds, edge).is_none() {
+        if thick(medium, bounds, edge).is_none() {
             continue;
         }
-        let Some(of_medium) = thick(medium, &bounds, edge.min(thickness(id, &bounds))) else { continue };
-        if !holds_light(id, &bounds) {
+        let Some(of_medium) = thick(medium, bounds, edge.min(thickness(id, bounds))) else { continue };
+        if !holds_light(id, bounds) {
             *half_space = Some(HalfSpace::of(medium));
             reflected.push(of_medium);
         }

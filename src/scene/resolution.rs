@@ -10,26 +10,21 @@
 //! [`Frame::roughness`]: super::frame::Frame::roughness
 //! [`Counters::too_many_mismatches`]: crate::integrator::Counters::too_many_mismatches
 
-use super::geometry::Geometry;
-use super::surface::Surface;
-use super::thick;
 use crate::geometry::Bounds;
-use crate::optics::medium::{Medium, MediumId};
+use crate::optics::medium::Medium;
 
 /// Below it no flight in ten million is led astray: what is finer is not asked for.
 const FINE: f32 = 1e-5;
 
-/// The roughness of the media of a frame that scatter, the greatest of all; 0 where it does not matter.
-pub(super) fn roughness(media: &[Medium], geometry: &Geometry, surfaces: &[Surface], all: &Bounds) -> f32 {
-    let matters = |of: f32| if of > FINE { of } else { 0.0 };
-    let of_medium = |(medium, id): (&Medium, MediumId)| {
+/// The roughness of the media of a frame that scatter, the greatest of all; 0 where it does not matter. `boxes` are those
+/// around the media.
+pub(super) fn roughness(media: &[Medium], boxes: &[Bounds]) -> f32 {
+    let of_medium = |(medium, bounds): (&Medium, &Bounds)| {
         let sigma_t = medium.sigma_s.combined(&medium.sigma_a, |s, a| s + a).maximum();
-        if medium.sigma_s.is_zero() || matters(roughness_within(all, sigma_t)) == 0.0 {
-            return 0.0;
-        }
-        matters(roughness_within(&thick::bounds_of(id, geometry, surfaces), sigma_t))
+        let found = if medium.sigma_s.is_zero() { 0.0 } else { roughness_within(bounds, sigma_t) };
+        if found > FINE { found } else { 0.0 }
     };
-    media.iter().zip((0..).map(MediumId)).map(of_medium).fold(0.0, f32::max)
+    media.iter().zip(boxes).map(of_medium).fold(0.0, f32::max)
 }
 
 fn roughness_within(bounds: &Bounds, sigma_t: f32) -> f32 {

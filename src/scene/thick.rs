@@ -9,10 +9,10 @@
 //! Media that absorb and let next to nothing through lead their walks to the surface ([`crate::optics::dwivedi`]), which changes no expectation.
 
 use super::geometry::Geometry;
-use super::surface::{MediumPair, Surface};
+use super::surface::Surface;
 use crate::geometry::Bounds;
 use crate::optics::dwivedi;
-use crate::optics::medium::{Medium, MediumId};
+use crate::optics::medium::Medium;
 use crate::optics::similarity::Reduction;
 use crate::spectrum::LaneCurve;
 
@@ -41,15 +41,17 @@ pub(super) fn reduce(
     reductions: &[Option<Reduction>],
     order: u32,
     endless: &[bool],
-    extents: impl Fn(MediumId) -> f32,
+    boxes: &[Bounds],
 ) -> Vec<Reduced> {
     let mut reduced = Vec::new();
-    for ((medium, reduction), id) in media.iter_mut().zip(reductions).zip((0..).map(MediumId)) {
+    for ((medium, reduction), (endless, bounds)) in
+        media.iter_mut().zip(reductions).zip(endless.iter().zip(boxes))
+    {
         let Some(Reduction { alpha, phase }) = reduction else { continue };
         if medium.sigma_s.is_zero() || !medium.density.is_homogeneous() {
             continue;
         }
-        if is_thick(medium, endless[id.0 as usize], || extents(id)) {
+        if is_thick(medium, *endless, bounds) {
             let share = *alpha as f32;
             medium.sigma_s =
                 medium.sigma_s.combined(&LaneCurve::Constant(share), |sigma_s, alpha| sigma_s * alpha);
@@ -61,11 +63,11 @@ pub(super) fn reduce(
 }
 
 /// The media of a frame whose walks are worth leading to the surface.
-pub(super) fn led(media: &[Medium], endless: &[bool], extents: impl Fn(MediumId) -> f32) -> Vec<bool> {
-    let is_led = |(medium, id): (&Medium, MediumId)| {
-        is_worth_leading(medium) && (endless[id.0 as usize] || is_opaque(medium, extents(id)))
+pub(super) fn led(media: &[Medium], endless: &[bool], boxes: &[Bounds]) -> Vec<bool> {
+    let is_led = |(medium, (endless, bounds)): (&Medium, (&bool, &Bounds))| {
+        is_worth_leading(medium) && (*endless || is_opaque(medium, bounds))
     };
-    media.iter().zip((0..).map(MediumId)).map(is_led).collect()
+    media.iter().zip(endless.iter().zip(boxes)).map(is_led).collect()
 }
 
 /// True where much is absorbed, but not nearly all.
@@ -77,30 +79,35 @@ fn is_worth_leading(medium: &Medium) -> bool {
 }
 
 /// True where walks that are led the wrong way do not matter: next to no light gets through.
-fn is_opaque(medium: &Medium, extent: f32) -> bool {
+fn is_opaque(medium: &Medium, bounds: &Bounds) -> bool {
     let rest = 1.0 - medium.phase.mean_cosine();
     let kappa = medium.sigma_s.combined(&medium.sigma_a, |s, a| dwivedi::decay(s * rest, a));
-    kappa.minimum() * extent >= OPAQUE
+    kappa.minimum() * bounds.size().min_element() >= OPAQUE
 }
 
 /// True where the reduced optical size is [`THICK`] or more.
-fn is_thick(medium: &Medium, is_endless: bool, extent: impl Fn() -> f32) -> bool {
+fn is_thick(medium: &Medium, is_endless: bool, bounds: &Bounds) -> bool {
     let per_metre = medium.sigma_s.minimum() * (1.0 - medium.phase.mean_cosine());
-    let extent = if is_endless || per_metre <= 0.0 { f32::INFINITY } else { extent() };
+    let extent = if is_endless { f32::INFINITY } else { bounds.size().min_element() };
     per_metre > 0.0 && per_metre * extent >= THICK
 }
 
-/// The least edge of the box around the interfaces of a medium in metres; 0 without any.
-pub(super) fn least_extent(id: MediumId, geometry: &Geometry, surfaces: &[Surface]) -> f32 {
-    bounds_of(id, geometry, surfaces).size().min_element()
-}
-
-/// The box around the interfaces of a medium.
-pub(super) fn bounds_of(id: MediumId, geometry: &Geometry, surfaces: &[Surface]) -> Bounds {
-    let is_of = |pair: &MediumPair| pair.front == id || pair.back == id;
-    let own: Vec<bool> = surfaces.iter().map(|s| s.pair().is_some_and(is_of)).collect();
-    let corners = (0..geometry.triangles.len() as u32)
-        .filter(|&triangle| own[geometry.surfaces[triangle as usize].0 as usize])
-        .flat_map(|triangle| geometry.vertices(triangle));
-    Bounds::of_points(corners)
+/// The boxes around the interfaces of the media that scatter, by [`MediumId`]; empty of all others, which nobody asks for.
+pub(super) fn boxes(media: &[Medium], geometry: &Geometry, surfaces: &[Surface]) -> Vec<Bounds> {
+    let mut boxes = vec![Bounds::EMPTY; media.len()];
+    let scatters: Vec<bool> = media.iter().map(|medium| !medium.sigma_s.is_zero()).collect();
+    if !scatters.contains(&true) {
+        return boxes;
+    }
+    let sides = |surface: &Surface| match surface.pair() {
+        Some(pair) => [pair.front, pair.back].map(|id| Some(id.0 as usize).filter(|&id| scatters[id])),
+        None => [None; 2],
+    };
+    let sides: Vec<[Option<usize>; 2]> = surfaces.iter().map(sides).collect();
+    for (triangle, surface) in (0..).zip(&geometry.surfaces) {
+        for id in sides[surface.0 as usize].into_iter().flatten() {
+            boxes[id] = geometry.vertices(triangle).into_iter().fold(boxes[id], Bounds::including);
+        }
+    }
+    boxes
 }
