@@ -66,6 +66,16 @@ fn a_study_writes_tables_a_diagram_and_its_reference() {
 
 /// The sun lights the floor of a tank through its surface: paths find nothing of it, and the test says so.
 #[test]
+fn a_target_of_the_scene_shortens_no_budget() {
+    let table = |target: &str| {
+        let folder = boxes(1, &format!("[render]\nsamples = 2\n{target}"));
+        floe(&folder, &FEW).ended(0);
+        timeless(&folder.read(FILES[1]))
+    };
+    assert_eq!(table("target_error = 0.9\n"), table(""));
+}
+
+#[test]
 fn light_that_an_integrator_leaves_out_is_a_bias() {
     let floor = "[[surfaces]]\nmesh = \"floor.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0.5 }\n";
     let sun = "[sun]\ndirection = [0.1, 0.2, 1]\nangular_diameter = 10\nirradiance = 3\n";

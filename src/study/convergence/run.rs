@@ -52,7 +52,9 @@ impl Run {
         (samples, seed): (u32, u64),
         watch: &Watch,
     ) -> Option<Self> {
-        let sampling = Sampling { samples, seed: SampleSeed::new(seed), ..Sampling::new(settings) };
+        // A budget is a budget, whatever the scene says of when it is enough.
+        let sampling =
+            Sampling { samples, seed: SampleSeed::new(seed), target: None, ..Sampling::new(settings) };
         let mut accumulation = Accumulation::new(frame.views.opening.resolution());
         let (clock, cpu) = (Instant::now(), ProcessTime::now());
         let stopped_by = accumulate(&mut accumulation, frame, &sampling, watch);
