@@ -11,8 +11,10 @@ use super::meshes::MeshSequence;
 use crate::film::write::write_atomically;
 use crate::mesh::{self, MeshError, RawMesh};
 use crate::scene::FrameError;
+use crate::scene::assembly::Buffers;
 use crate::scene::description::{Placement, SceneDescription, automatic_placement, default_scene};
 use crate::scene::domain::detect_box;
+use crate::scene::frame::Frame;
 use crate::scene::world::World;
 use crate::sequence::{FrameFile, FrameNumber, FrameSelection, SequenceError, discover, frame_path};
 
@@ -62,6 +64,16 @@ impl FrameTask {
     pub fn read(&self, world: &World) -> Result<Parsed, RenderError> {
         let fingerprints = Fingerprints::new(world, &world.description.render);
         FrameSource::read(world, &fingerprints, self)?.parse(world)
+    }
+
+    /// Reads and assembles it; from the frame before what still serves is taken over.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or there is no frame of them.
+    pub fn assemble(&self, world: &World, previous: Option<&Frame>) -> Result<Frame, RenderError> {
+        let Parsed { meshes, inputs, .. } = self.read(world)?;
+        let assembled = world.assemble_into(Buffers::default(), self.number, meshes, inputs, previous);
+        Ok(assembled.map_err(RenderError::from)?.frame)
     }
 
     /// The bytes of one of its meshes.

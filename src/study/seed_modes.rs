@@ -7,12 +7,10 @@ use serde::Serialize;
 use super::error::StudyError;
 use super::temporal::{TemporalErrors, TemporalMetrics, WINDOW};
 use crate::driver::RenderError;
-use crate::driver::fingerprint::Parsed;
 use crate::driver::frame_seeds::FrameSeeds;
 use crate::driver::job::{FrameTask, Job};
 use crate::driver::tiles::{Sampling, render_pixels};
 use crate::film::tonemap::ToneMap;
-use crate::scene::assembly::Buffers;
 use crate::scene::description::{RenderDescription, SeedMode};
 use crate::scene::frame::Frame;
 use crate::sequence::{FrameNumber, FrameSelection, format_numbers};
@@ -75,7 +73,7 @@ pub fn study_seed_modes(
     let mut errors = SeedMode::ALL.map(|_| TemporalErrors::new(width, height));
     let mut previous: Option<Frame> = None;
     for task in &tasks {
-        let frame = assemble(job, task, previous.as_ref())?;
+        let frame = task.assemble(&job.world, previous.as_ref())?;
         for ((_, mode), errors) in SeedMode::ALL.iter().zip(&mut errors) {
             let settings = RenderDescription { seed_mode: Some(*mode), ..scene.clone() };
             let shown = |seed| shown(&frame, &settings, tone_map, seed, task.number);
@@ -118,12 +116,6 @@ fn tasks(job: &Job, study: &SeedModeStudy) -> Result<Vec<FrameTask>, StudyError>
         return Err(StudyError::TooManyFrames { most: MOST_FRAMES });
     }
     Ok(numbers.into_iter().map(|number| FrameTask { number, files: files.clone(), next: None }).collect())
-}
-
-fn assemble(job: &Job, task: &FrameTask, previous: Option<&Frame>) -> Result<Frame, RenderError> {
-    let Parsed { meshes, inputs, .. } = task.read(&job.world)?;
-    let assembled = job.world.assemble_into(Buffers::default(), task.number, meshes, inputs, previous);
-    Ok(assembled.map_err(RenderError::from)?.frame)
 }
 
 /// The luma of one picture as a screen shows it, from 0 to 1.

@@ -1,12 +1,11 @@
 //! The frame as each series needs it: mostly one for all.
 
 use super::ConvergenceStudy;
-use crate::driver::fingerprint::{Fingerprint, Fingerprints, FrameSource, Parsed};
+use crate::driver::fingerprint::{Fingerprint, Fingerprints, FrameSource};
 use crate::driver::job::FrameTask;
 use crate::driver::{Job, RenderError};
 use crate::film::ImageMetadata;
 use crate::integrator::Integrator;
-use crate::scene::assembly::Buffers;
 use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
 use crate::sequence::{FrameNumber, FrameSelection};
@@ -26,14 +25,14 @@ impl<'a> Frames<'a> {
         let job = open(study, None)?;
         let task = task(&job, study.frame)?;
         let render = job.world.description.render.clone();
-        let frame = assemble(&job, &task)?;
+        let frame = task.assemble(&job.world, None)?;
         Ok(Self { study, job, task, assembled: vec![(render, frame)] })
     }
 
     /// Assembles the frame for other settings, unless there is one that serves.
     pub fn prepare(&mut self, render: &RenderDescription) -> Result<(), StudyError> {
         if self.of(render).is_none() {
-            let frame = assemble(&open(self.study, Some(render))?, &self.task)?;
+            let frame = self.task.assemble(&open(self.study, Some(render))?.world, None)?;
             self.assembled.push((render.clone(), frame));
         }
         Ok(())
@@ -116,10 +115,4 @@ fn task(job: &Job, number: Option<FrameNumber>) -> Result<FrameTask, RenderError
         files: Vec::new(),
         next: None,
     }))
-}
-
-fn assemble(job: &Job, task: &FrameTask) -> Result<Frame, RenderError> {
-    let Parsed { meshes, inputs, .. } = task.read(&job.world)?;
-    let assembled = job.world.assemble_into(Buffers::default(), task.number, meshes, inputs, None);
-    Ok(assembled.map_err(RenderError::from)?.frame)
 }
