@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::{cuboid, parallelogram};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;

@@ -9,7 +9,8 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
-use super::media::{CUBE, DENSITIES, OBLIQUE, STRAIGHT, folder, npy};
+use super::media::{CUBE, DENSITIES, OBLIQUE, STRAIGHT, folder};
+use crate::common::files::npy;
 use crate::common::mesh::{cuboid, parallelogram};
 
 const FOG: &str = "[render]\nintegrator = \"fog\"\n";

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::estimates::assert_mean;
 use super::media::{CUBE, DENSITIES, OBLIQUE, folder};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::parallelogram;
 
 /// Sun, sky, a lamp and glow, in chromatic media of any density, with and without refraction.

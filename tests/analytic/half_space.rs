@@ -6,7 +6,7 @@ use floe::study::stability::h_function::HFunction;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::{TestMesh, parallelogram, sphere};
 use crate::common::scene::SceneFolder;
 

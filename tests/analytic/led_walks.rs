@@ -1,7 +1,7 @@
 //! Walks that are led to the surface of thick media that absorb, against those that are not.
 
 use super::thick_media::{ABOVE, BELOW, LAYER, TRAY, assert_same_mean, tray};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
 use glam::DVec3;

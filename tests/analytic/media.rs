@@ -4,6 +4,7 @@ use floe::driver::error::Blame;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
+use crate::common::files::npy;
 use crate::common::mesh::{cuboid, parallelogram};
 use crate::common::scene::SceneFolder;
 
@@ -22,17 +23,6 @@ pub const DENSITIES: [&str; 4] = [
     "density = { stratified = -0.3 }\n",
     "density = { grid = \"plume.npy\", box = [[-0.6, -0.8, -0.7], [0.7, 0.5, 0.9]] }\n",
 ];
-
-/// A `.npy` of single precision in Fortran order.
-pub fn npy(size: [usize; 3], value: impl Fn(usize) -> f32) -> Vec<u8> {
-    let [x, y, z] = size;
-    let header = format!("{{'descr': '<f4', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}\n");
-    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-    bytes.extend((header.len() as u16).to_le_bytes());
-    bytes.extend(header.as_bytes());
-    bytes.extend((0..x * y * z).flat_map(|i| value(i).to_le_bytes()));
-    bytes
-}
 
 /// Values from 0 to 2 that repeat nowhere.
 fn plume_value(cell: usize) -> f32 {

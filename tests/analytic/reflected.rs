@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::estimates::{assert_every_pixel, assert_mean};
 use super::half_space::{COSINES, SLAB, camera, slab, sun};
 use super::thick_media::assert_same_mean;
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::sphere;
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;

@@ -7,7 +7,7 @@ use floe::study::stability::h_function::HFunction;
 use glam::DVec3;
 
 use super::half_space::{COSINES, SLAB, camera, slab};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::sphere;
 use crate::common::render::Rendered;
 use crate::common::scene::SceneFolder;

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::estimates::assert_mean;
 use super::media::{CUBE, DENSITIES, OBLIQUE, folder};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::{TestMesh, cuboid, parallelogram};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::led_walks::{EVEN, Layer, PICTURE, folder, lead};
 use super::thick_media::{ABOVE, BELOW, LAYER, TRAY, assert_same_mean, trace_every_flight, tray};
-use super::walls::sky_picture;
+use crate::common::files::sky_picture;
 use crate::common::mesh::{TestMesh, sphere};
 use crate::common::render::{Prepared, Rendered};
 use crate::common::scene::SceneFolder;

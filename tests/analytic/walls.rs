@@ -1,11 +1,9 @@
 //! What an eye in a simulated box of water sees through each kind of wall.
 
-use std::io::Cursor;
-
-use exr::prelude::*;
 use glam::DVec3;
 
 use super::estimates::{assert_every_pixel, assert_mean};
+use crate::common::files::sky_picture;
 use crate::common::mesh::cuboid;
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
@@ -14,23 +12,6 @@ use crate::common::scene::SceneFolder;
 const N: f64 = 1.33;
 /// Reflectance of its surface at normal incidence.
 const R: f64 = (0.33 / 2.33) * (0.33 / 2.33);
-
-/// A latitude-longitude picture of 64 x 32 texels from the radiance of each texel's direction (z up, x in the middle).
-pub fn sky_picture(radiance: impl Fn(DVec3) -> DVec3 + Sync) -> Vec<u8> {
-    let (width, height) = (64, 32);
-    let texel = |x: usize, y: usize| {
-        let phi = (2.0 * (x as f64 + 0.5) / width as f64 - 1.0) * std::f64::consts::PI;
-        let theta = (y as f64 + 0.5) / height as f64 * std::f64::consts::PI;
-        let direction = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
-        let [r, g, b] = radiance(direction).to_array().map(|v| v as f32);
-        (r, g, b)
-    };
-    let image =
-        Image::from_channels((width, height), SpecificChannels::rgb(|p: Vec2<usize>| texel(p.x(), p.y())));
-    let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes).unwrap_or_else(|e| panic!("no picture: {e}"));
-    bytes.into_inner()
-}
 
 /// A box of water that fills x and y from -1 to 1 up to z = 0.3, with the eye in its middle.
 fn water(walls: &str, sky: &str, picture: &[u8], target: [f64; 3]) -> Prepared {

@@ -3,6 +3,7 @@
 // Each test file is a crate of its own and uses a part of this one.
 #![allow(dead_code, unused_imports)]
 
+pub mod files;
 pub mod mesh;
 pub mod numbers;
 pub mod reference;

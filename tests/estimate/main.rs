@@ -7,6 +7,5 @@
 mod common;
 
 mod coverage;
-mod files;
 mod rates;
 mod scenes;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::common::files::{npy, sky_picture};
 use crate::common::mesh::{Moving, TestMesh, cuboid, parallelogram, sphere};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
@@ -57,19 +58,19 @@ fn folder() -> SceneFolder {
         .file("moving_0001.ply", ball.moving_ply(|p| v(9.0, 2.0, 6.0) + 4.0 * v(p.z, 0.0, -p.x)).as_bytes())
         .file(
             "sky.exr",
-            &crate::files::picture(|d| {
+            &sky_picture(|d| {
                 v(0.4, 0.6, 1.0) * (1.0 + 0.8 * d.z)
                     + 6.0 * v(1.0, 0.9, 0.7) * (d.x * 0.6 + d.z * 0.8).max(0.0).powi(24)
             }),
         )
         .file(
             "sharp.exr",
-            &crate::files::picture(|d| {
+            &sky_picture(|d| {
                 let is_sun = d.dot(v(0.3, -0.4, 0.85).normalize()) > 0.995;
                 if is_sun { DVec3::splat(2000.0) } else { v(0.3, 0.4, 0.5) }
             }),
         )
-        .file("plume.npy", &crate::files::npy([7, 9, 5], |i| (i * 37 % 101) as f32 / 50.0))
+        .file("plume.npy", &npy([7, 9, 5], |i| (i * 37 % 101) as f32 / 50.0))
 }
 
 /// A block of water whose top is a wave.

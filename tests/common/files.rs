@@ -1,11 +1,12 @@
 //! Files of skies and densities.
+
 use std::io::Cursor;
 
 use exr::prelude::*;
 use glam::DVec3;
 
 /// A latitude-longitude picture of 64 x 32 texels from the radiance of each texel's direction (z up, x in the middle).
-pub fn picture(radiance: impl Fn(DVec3) -> DVec3 + Sync) -> Vec<u8> {
+pub fn sky_picture(radiance: impl Fn(DVec3) -> DVec3 + Sync) -> Vec<u8> {
     let (width, height) = (64, 32);
     let texel = |x: usize, y: usize| {
         let phi = (2.0 * (x as f64 + 0.5) / width as f64 - 1.0) * std::f64::consts::PI;
