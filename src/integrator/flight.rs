@@ -72,7 +72,7 @@ impl Clearing {
     /// The path has collided at a point outside of the ball. Tells the probability with which it should go on: less
     /// than 1 where it is farther than before from all there is, measured by how wide that is, in a medium without end.
     #[inline]
-    pub(super) fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) -> f32 {
+    fn traced_to(&mut self, point: Vec3, sigma_t: f32, accel: &Accel, time: f32) -> f32 {
         self.radius = -1.0;
         self.collisions += 1;
         if self.collisions < self.patience {
@@ -158,10 +158,7 @@ impl Sample<'_> {
         {
             let point = endless.at(to_particle);
             if !VARIED {
-                let clearing = &mut self.scratch.around.clearing;
-                let sigma_t = medium.sigma_t.max_element();
-                let survival = clearing.traced_to(point, sigma_t, &self.frame.accel, self.time);
-                branch.wander_off(survival);
+                self.collided_at(branch, point, &medium);
             }
             branch.throughput *= medium.scatter_weight(flight);
             return Event::Particle(to_particle);
@@ -176,6 +173,15 @@ impl Sample<'_> {
             self.scratch.around.clearing = Clearing::NONE;
         }
         Event::Surface(hit)
+    }
+
+    /// The path has collided at a point that it was traced to: looks for a ball around it, and lets those go on that are
+    /// not too far from all there is.
+    #[inline]
+    pub(super) fn collided_at(&mut self, branch: &mut Branch, point: Vec3, medium: &MediumLanes) {
+        let clearing = &mut self.scratch.around.clearing;
+        let survival = clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
+        branch.wander_off(survival);
     }
 
     /// True when a particle of its medium may turn the path.

@@ -53,10 +53,7 @@ impl Sample<'_> {
                 self.scratch.around.clearing = Clearing::NONE;
                 return Event::Surface(hit);
             }
-            let clearing = &mut self.scratch.around.clearing;
-            let sigma_t = medium.sigma_t.max_element();
-            let survival = clearing.traced_to(point, sigma_t, &self.frame.accel, self.time);
-            branch.wander_off(survival);
+            self.collided_at(branch, point, &medium);
         }
         branch.throughput *= flight.scatter_weight(&medium, distance);
         Event::Particle(distance)
