@@ -92,7 +92,7 @@ fn is_thick(medium: &Medium, is_endless: bool, bounds: &Bounds) -> bool {
     per_metre > 0.0 && per_metre * extent >= THICK
 }
 
-/// The boxes around the interfaces of the media that scatter, by [`MediumId`]; empty of all others, which nobody asks for.
+/// The boxes around the interfaces of the media that scatter, by their number; empty of all others, which nobody asks for.
 pub(super) fn boxes(media: &[Medium], geometry: &Geometry, surfaces: &[Surface]) -> Vec<Bounds> {
     let mut boxes = vec![Bounds::EMPTY; media.len()];
     let scatters: Vec<bool> = media.iter().map(|medium| !medium.sigma_s.is_zero()).collect();
