@@ -34,7 +34,7 @@ fn the_quick_cases_are_as_expected() {
     assert_passes(&Selection { quick: true, ..Selection::default() });
 }
 
-/// `FLOE_STABILITY=sun,size` runs these groups only.
+/// `FLOE_STABILITY=sun,scale` runs these groups only.
 #[test]
 #[ignore = "minutes"]
 fn every_case_is_as_expected() {

@@ -35,6 +35,8 @@ use std::collections::VecDeque;
 
 use serde::Serialize;
 
+use super::statistics::mean_and_variance;
+
 /// Frames that an eye takes in at once: a third of a second.
 pub const WINDOW: usize = 8;
 
@@ -149,7 +151,7 @@ impl TemporalErrors {
             tcr: ratio((WINDOW as f64).sqrt() * windowed, rmse),                   // (2)
             lag1: ratio(self.products, ((total - last) * (total - first)).sqrt()), // (3)
             flicker: (spread / (pixels * (frames - 1.0))).sqrt(),                  // (4)
-            jitter: deviation(&self.frame_means),                                  // (5)
+            jitter: mean_and_variance(&self.frame_means).1.sqrt(),                 // (5)
             fireflies: self.fireflies as f64 / (pixels * frames),                  // (6)
         })
     }
@@ -157,13 +159,6 @@ impl TemporalErrors {
 
 fn ratio(a: f64, b: f64) -> f64 {
     if b > 0.0 { a / b } else { 0.0 }
-}
-
-/// Standard deviation of a sample of at least two.
-fn deviation(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt()
 }
 
 /// A pixel and those around it, as many as lie within the frame.

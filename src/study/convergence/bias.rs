@@ -21,6 +21,7 @@ use super::reference::Reference;
 use crate::film::FrameImage;
 use crate::spectrum::luminance::luminance_f64;
 use crate::study::distributions::student_two_sided;
+use crate::study::statistics::mean_and_variance;
 
 /// Columns and rows of blocks, where there are as many pixels. Few and large ones are about normal sooner.
 const GRID: usize = 4;
@@ -76,8 +77,8 @@ pub(super) fn bias(repeats: &[Vec<f64>], reference: &Reference) -> Bias {
     for (region, (expected, variance)) in means.iter().zip(&variances).enumerate() {
         let values: Vec<f64> = repeats.iter().map(|means| means[region]).collect();
         let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let own = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0) / n;
+        let (mean, spread) = mean_and_variance(&values);
+        let own = spread / n;
         let rounding = ROUNDING * expected;
         let all = own + variance + rounding * rounding;
         let degrees_of_freedom = (all / own) * (all / own) * (n - 1.0); // (2)
@@ -94,11 +95,12 @@ pub(super) fn bias(repeats: &[Vec<f64>], reference: &Reference) -> Bias {
 
 #[cfg(test)]
 mod tests {
-    use super::super::reference::tests::{Noise12, picture, reference, regions};
+    use super::super::reference::tests::{picture, reference, regions};
     use super::*;
+    use crate::film::SplitMix;
 
     /// p of 8 pictures against a reference, both with noise that pixels have alone and that they share.
-    fn tested(random: &mut Noise12, own: f64, shared: f64, gain: f64) -> Bias {
+    fn tested(random: &mut SplitMix, own: f64, shared: f64, gain: f64) -> Bias {
         let reference = reference(random, own, shared);
         let pictures: Vec<Vec<f64>> = (0..8).map(|_| regions(&picture(random, own, shared, gain))).collect();
         bias(&pictures, &reference)
@@ -109,7 +111,7 @@ mod tests {
     /// 7.6 % by the quantiles of Student's t for 14 and 7, so fewer than 52.
     #[test]
     fn what_is_the_same_is_seldom_found_to_differ() {
-        let mut random = Noise12(1);
+        let mut random = SplitMix(1);
         for (shared, most) in [(0.0, 38), (0.05, 52)] {
             let found = (0..400).filter(|_| tested(&mut random, 0.1, shared, 1.0).p < 0.05).count();
             assert!(found < most, "{found} of 400 with {shared}");
@@ -120,14 +122,14 @@ mod tests {
     /// is 17 of these.
     #[test]
     fn what_differs_is_found() {
-        let mut random = Noise12(2);
+        let mut random = SplitMix(2);
         let found = tested(&mut random, 0.1, 0.0, 1.05);
         assert!(found.p < 1e-6 && (found.relative - 0.05).abs() < 0.02 && found.t > 8.0, "{found:?}");
     }
 
     #[test]
     fn pictures_without_noise_are_the_same_or_not() {
-        let mut random = Noise12(3);
+        let mut random = SplitMix(3);
         assert_eq!(tested(&mut random, 0.0, 0.0, 1.0).p, 1.0);
         assert!(tested(&mut random, 0.0, 0.0, 1.001).p < 1e-9);
     }

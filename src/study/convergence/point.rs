@@ -153,8 +153,9 @@ fn root(square: Estimate) -> Estimate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::reference::tests::{Noise12, SIZE, picture, reference};
+    use super::super::reference::tests::{SIZE, picture, reference};
     use super::*;
+    use crate::film::SplitMix;
     use crate::film::{FrameImage, Pixel};
 
     fn run(colours: &[Vec3], cpu_seconds: f64) -> Run {
@@ -170,7 +171,7 @@ mod tests {
     /// are four.
     #[test]
     fn the_references_noise_is_taken_off() {
-        let mut random = Noise12(9);
+        let mut random = SplitMix(9);
         let (mut mse, mut relative, mut expected) = (0.0, 0.0, 0.0);
         for _ in 0..40 {
             let reference = reference(&mut random, 0.1, 0.0);
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_point_adds_up() {
-        let reference = reference(&mut Noise12(1), 0.0, 0.0);
+        let reference = reference(&mut SplitMix(1), 0.0, 0.0);
         let mut tally = Tally::default();
         assert_eq!(tally.point(4, &reference), None);
         for gain in [1.0, 3.0] {

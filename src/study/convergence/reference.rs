@@ -32,6 +32,7 @@ use crate::scene::description::{Aov, RenderDescription};
 use crate::scene::frame::Frame;
 use crate::spectrum::luminance::luminance_f64;
 use crate::study::error::StudyError;
+use crate::study::statistics::mean_and_variance;
 
 /// Pictures that a reference is the mean of.
 pub const PARTS: u32 = 8;
@@ -164,8 +165,8 @@ impl Reference {
         let independent: f64 = self.region_variances().iter().skip(1).sum();
         let n = parts.len() as f64;
         let spread = |region: usize| {
-            let mean = parts.iter().map(|means| means[region]).sum::<f64>() / n;
-            parts.iter().map(|means| (means[region] - mean) * (means[region] - mean)).sum::<f64>() / (n - 1.0)
+            let means: Vec<f64> = parts.iter().map(|means| means[region]).collect();
+            mean_and_variance(&means).1
         };
         let found = (1..parts[0].len()).map(spread).sum::<f64>() / n / independent;
         if found.is_finite() { found } else { 1.0 }
@@ -299,30 +300,17 @@ impl Spread {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-
-    /// Numbers as of a standard normal distribution: the sum of twelve uniform ones less 6, which has its first two moments.
-    pub struct Noise12(pub u64);
-
-    impl Noise12 {
-        pub fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 =
-                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-    }
+    use crate::film::SplitMix;
 
     /// Edges of the pictures.
     pub const SIZE: usize = 24;
 
     /// A grey picture of luminance 0.2 to 1.2, with noise that pixels have alone and noise that all share.
-    pub fn picture(random: &mut Noise12, own: f64, shared: f64, gain: f64) -> Vec<Vec3> {
-        let common = shared * random.next();
+    pub fn picture(random: &mut SplitMix, own: f64, shared: f64, gain: f64) -> Vec<Vec3> {
+        let common = shared * random.normal();
         let n = (SIZE * SIZE) as f64;
         let grey =
-            |p: usize| Vec3::splat((gain * (0.2 + p as f64 / n) + own * random.next() + common) as f32);
+            |p: usize| Vec3::splat((gain * (0.2 + p as f64 / n) + own * random.normal() + common) as f32);
         (0..SIZE * SIZE).map(grey).collect()
     }
 
@@ -331,7 +319,7 @@ pub(super) mod tests {
     }
 
     /// The mean of eight pictures.
-    pub fn reference(random: &mut Noise12, own: f64, shared: f64) -> Reference {
+    pub fn reference(random: &mut SplitMix, own: f64, shared: f64) -> Reference {
         let (mut spread, mut all) = (Spread::default(), Vec::new());
         for _ in 0..PARTS {
             let colours = picture(random, own, shared, 1.0);
@@ -346,7 +334,7 @@ pub(super) mod tests {
     /// half of their variance make it 1/2 + 36/2, known to (2 / 7)^(1/2) = 53 % since one number is all there is.
     #[test]
     fn errors_that_pixels_share_are_noticed() {
-        let mut random = Noise12(5);
+        let mut random = SplitMix(5);
         let alone = reference(&mut random, 0.1, 0.0).facts.correlation;
         assert!((alone - 1.0).abs() < 0.54, "{alone}");
         let mean = (0..50).map(|_| reference(&mut random, 0.1, 0.1).facts.correlation).sum::<f64>() / 50.0;

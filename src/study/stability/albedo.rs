@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::pieces::{WHITE_SKY, camera, dielectric, medium, null, render};
+use super::pieces::{WHITE_SKY, camera, dielectric, medium, milk_in_white, null, render};
 use super::shapes::{cuboid, sphere};
 use super::{Case, Group, Measurement, Reference, Scene};
 use crate::study::StudyError;
@@ -73,13 +73,7 @@ pub(super) fn ball_of(sigma_a: f64, reduced: f64, coefficients: &str) -> Result<
 
 /// Lanes that scatter differently are weighted over all: means are 1 within their noise.
 fn white() -> Result<Measurement, StudyError> {
-    let text = medium("milk", "extinction = [3, 30, 10]\nalbedo = 1")
-        + &dielectric("cube.ply", "air", "milk")
-        + &camera([1.2, -3.5, 0.8], [0.0; 3], 16.0, [8, 8])
-        + &render(256, "")
-        + WHITE_SKY;
-    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
-    let picture = Scene::new().mesh("cube.ply", &cube).render(&text)?;
+    let picture = milk_in_white("extinction = [3, 30, 10]\nalbedo = 1", 256)?;
     let channels = Measurement::channels_of(&picture, Reference::ClosedForm, [1.0; 3]);
     Ok(Measurement::worst(channels.map(|channel| channel.tolerance(1e-6))))
 }

@@ -1,10 +1,9 @@
 //! Lobes from even to peaks of a ten-thousandth of a radian, forward and backward.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
-use super::pieces::{WHITE_SKY, camera, dielectric, medium, render};
-use super::shapes::cuboid;
-use super::{Case, Group, Measurement, Reference, Scene};
+use super::pieces::milk_in_white;
+use super::{Case, Group, Measurement, Reference};
 use crate::optics::phase::{Deflection, HenyeyGreenstein, PhaseFunction};
 use crate::study::StudyError;
 
@@ -60,13 +59,7 @@ fn lobe(g: f64, coefficients: &str) -> String {
 /// Weights are 1 exactly, but for the roundings of the collisions: 1e-5 of some hundred of them leaves an order of
 /// magnitude.
 fn furnace(g: f64) -> Result<Measurement, StudyError> {
-    let text = medium("milk", &lobe(g, "ior = 1.33\nscattering = 100"))
-        + &dielectric("cube.ply", "air", "milk")
-        + &camera([1.2, -3.5, 0.8], [0.0; 3], 16.0, [8, 8])
-        + &render(16, "")
-        + WHITE_SKY;
-    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
-    let picture = Scene::new().mesh("cube.ply", &cube).render(&text)?;
+    let picture = milk_in_white(&lobe(g, "ior = 1.33\nscattering = 100"), 16)?;
     Ok(Measurement::farthest_in(&picture, Reference::ClosedForm, 1.0).tolerance(1e-5))
 }
 

@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use super::pieces::{WHITE_SKY, camera, camera_along_z, dielectric, emitter, medium, render};
+use super::pieces::{WHITE_SKY, camera_along_z, dielectric, emitter, medium, milk_in_white, render};
 use super::shapes::{Shape, cuboid, parallelogram};
 use super::{Case, Group, Measurement, Reference, Scene};
 use crate::study::StudyError;
@@ -117,12 +117,6 @@ fn shift(n: f64) -> Result<Measurement, StudyError> {
 
 /// Reflections within end in the roulette after 1024 of them.
 fn furnace(n: f64) -> Result<Measurement, StudyError> {
-    let text = medium("milk", &format!("ior = {n}\nscattering = 10"))
-        + &dielectric("cube.ply", "air", "milk")
-        + &camera([1.2, -3.5, 0.8], [0.0; 3], 16.0, [8, 8])
-        + &render(16, "")
-        + WHITE_SKY;
-    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
-    let picture = Scene::new().mesh("cube.ply", &cube).render(&text)?;
+    let picture = milk_in_white(&format!("ior = {n}\nscattering = 10"), 16)?;
     Ok(Measurement::farthest_in(&picture, Reference::ClosedForm, 1.0).tolerance(1e-5))
 }

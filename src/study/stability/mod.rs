@@ -31,7 +31,6 @@ mod limits;
 mod offsets;
 mod radiance;
 mod scale;
-mod size;
 mod slivers;
 mod spheres;
 mod sun;
@@ -54,7 +53,7 @@ pub struct Group {
 }
 
 /// Every group, in the order in which they are run.
-pub const GROUPS: [Group; 20] = [
+pub const GROUPS: [Group; 19] = [
     extinction::GROUP,
     half_spaces::GROUP,
     albedo::GROUP,
@@ -67,7 +66,6 @@ pub const GROUPS: [Group; 20] = [
     limits::DEPTH,
     limits::SAMPLES,
     limits::RESOLUTION,
-    size::GROUP,
     scale::GROUP,
     offsets::GROUP,
     slivers::GROUP,

@@ -2,6 +2,12 @@
 
 use std::fmt::Display;
 
+use glam::DVec3;
+
+use super::shapes::cuboid;
+use super::{Picture, Scene};
+use crate::study::StudyError;
+
 /// A surface of this mesh and material, with flat normals and further keys of the surface.
 fn surface(mesh: &str, keys: &str, material: &str) -> String {
     format!("[[surfaces]]\nmesh = \"{mesh}\"\nnormals = \"flat\"\n{keys}material = {{ {material} }}\n")
@@ -34,6 +40,16 @@ pub fn emitter(mesh: &str, radiance: impl Display) -> String {
 /// A medium with these keys.
 pub fn medium(name: &str, keys: &str) -> String {
     format!("[media.{name}]\n{keys}\n")
+}
+
+/// A cube of 1 m of "milk" with these keys in white surroundings, rendered with so many samples.
+pub(super) fn milk_in_white(keys: &str, samples: u32) -> Result<Picture, StudyError> {
+    let text = medium("milk", keys)
+        + &dielectric("cube.ply", "air", "milk")
+        + &camera([1.2, -3.5, 0.8], [0.0; 3], 16.0, [8, 8])
+        + &render(samples, "")
+        + WHITE_SKY;
+    Scene::new().mesh("cube.ply", &cuboid(DVec3::splat(-0.5), DVec3::splat(0.5))).render(&text)
 }
 
 /// White surroundings.

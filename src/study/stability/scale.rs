@@ -13,11 +13,11 @@ use crate::study::StudyError;
 pub(super) const GROUP: Group = Group {
     name: "scale",
     parameter: "metres that a length of 1 becomes; triangles",
-    about: "A scene of micrometres or of thousands of kilometres, with coefficients to match; fine meshes.",
+    about: "A scene of micrometres or of a million kilometres, with coefficients to match; fine meshes.",
     cases,
 };
 
-const SCALES: [f64; 8] = [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e7];
+const SCALES: [f64; 10] = [1e-6, 1e-4, 1e-3, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e7, 1e9];
 
 /// How the scene is rendered, and what is in it.
 const WAYS: [(&str, [f64; 2], &str); 4] = [
@@ -34,7 +34,7 @@ fn cases() -> Vec<Case> {
             let case = Case::new(&GROUP, name, scale, move || {
                 Ok(alike(&picture(1.0, scattering, way)?, &picture(scale, scattering, way)?))
             });
-            if [1e-6, 1e7].contains(&scale) { case.quick() } else { case }
+            if [1e-6, 1e7, 1e9].contains(&scale) { case.quick() } else { case }
         })
     });
     let fine = [2, 5, 8].map(|levels| {
