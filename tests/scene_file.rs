@@ -12,6 +12,7 @@ use proptest::prelude::*;
 
 mod scene_file {
     mod camera;
+    mod models;
 }
 
 fn parse(text: &str) -> Result<SceneDescription, SceneError> {
@@ -213,7 +214,6 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.a]\nalbedo = 0.5", 1, 1, "[media.a] has no `extinction`: `albedo` is a share of it"),
     ("[media.a]\nextinction = 0.5", 1, 1, "[media.a] has no `albedo`: write the share of scattering"),
     ("[media.a]\nmass_scattering = 5", 1, 1, "[media.a] has no `mass_concentration`: mass coefficients need it"),
-    ("[media.ice]\nmodel = 'iceberg'", 2, 1, "unknown key `model` in [media.ice]"),
     ("[render]\nsample = 4", 2, 1, "did you mean `samples`?"),
     ("[render]\nlimit = 0.1", 2, 1, "unknown key `limit` in [render]"),
     ("[camera]\neye = [1, 1, 1]\ntarget = [0, 0, 0]\nlens = 1", 4, 1, "unknown key `lens` in [camera]"),

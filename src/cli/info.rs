@@ -14,7 +14,7 @@ use crate::mesh::Region;
 use crate::optics::density::Density;
 use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::camera_path::StartPlaces;
-use crate::scene::description::{DensityDescription, MeshContents};
+use crate::scene::description::{DensityDescription, MeshContents, Model};
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
 use crate::spectrum::LaneMode;
@@ -139,6 +139,9 @@ fn describe_media(world: &World) -> String {
             medium.sigma_s.maximum(),
             medium.phase.mean_cosine()
         );
+        if let Some(model) = &world.description.media[&medium.name].model {
+            text += &describe_model(model);
+        }
         if medium.glows() {
             let _ = writeln!(text, "    emits up to {:.4e}", medium.emission.maximum());
         }
@@ -148,6 +151,26 @@ fn describe_media(world: &World) -> String {
             let _ = writeln!(text, "    density {density}");
         }
     }
+    text
+}
+
+/// What is in a medium, and what that does to light in the blue, green and red.
+fn describe_model(model: &Model) -> String {
+    let species = model.mixture.species.iter().map(|s| format!("{} {:.4e}", s.name, s.volume_fraction));
+    let species: Vec<String> = species.collect();
+    let contents = if species.is_empty() { "nothing".to_owned() } else { species.join(", ") };
+    let mut text = format!("    model {}, with {contents} of the volume\n", model.kind.name());
+    let wavelengths = [450.0, 550.0, 650.0];
+    let Ok(bulk) = model.mixture.bulk(&wavelengths) else { return text };
+    for (i, lambda) in wavelengths.iter().enumerate() {
+        let (a, s, g) = (bulk.sigma_a[i], bulk.sigma_s[i], bulk.g[i]);
+        let path = 1.0 / (a + s);
+        let _ = writeln!(
+            text,
+            "    {lambda} nm: absorption {a:.4e} /m, scattering {s:.4e} /m, mean cosine {g:.4}, mean free path {path:.4e} m"
+        );
+    }
+    let _ = writeln!(text, "    error of the integrals over radius {:.0e}", bulk.relative_error);
     text
 }
 

@@ -1,6 +1,7 @@
 //! What light meets: refractive indices, surfaces between media, and what is in the media.
 //!
-//! Water and ice come with measured tables ([`water`], [`ice`]); an index from them or from a scene file is a
+//! Water and ice come with measured tables ([`water`], [`ice`]), natural waters, icebergs and [`milk`] with what is in
+//! them, as [`particles`] need it; an index from them or from a scene file is a
 //! [`RefractiveIndex`]. Smooth boundaries reflect after Fresnel ([`fresnel`]) and bend after Snell ([`refraction`]).
 //!
 //! Indices are n + i k with k >= 0 absorbing. `eta_t_over_i` is the index on the far side over the index on the side
@@ -13,6 +14,7 @@ pub mod half_space;
 pub mod ice;
 pub mod lorenz_mie;
 pub mod medium;
+pub mod milk;
 pub mod particles;
 pub mod phase;
 pub mod refraction;

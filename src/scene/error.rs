@@ -6,6 +6,7 @@ use super::domain::DomainError;
 use super::layers::Insides;
 use crate::light::ImageError;
 use crate::mesh::MeshError;
+use crate::optics::particles::MixtureError;
 use crate::optics::volume::VolumeError;
 use crate::sequence::SequenceError;
 
@@ -31,6 +32,16 @@ pub enum FrameError {
         path: PathBuf,
         /// What is wrong.
         source: DomainError,
+    },
+    /// What is in a medium cannot be computed.
+    #[error("{scene}: [media.{medium}]: {source}")]
+    Mixture {
+        /// The scene file.
+        scene: PathBuf,
+        /// Name of the medium.
+        medium: String,
+        /// What is wrong.
+        source: Box<MixtureError>,
     },
     /// A label has no medium.
     #[error("{path}: label {label} has no medium; add `{label} = \"NAME\"` to [regions] in {scene}")]

@@ -17,6 +17,7 @@ pub mod geometry;
 pub mod half_spaces;
 pub mod inputs;
 pub mod layers;
+mod modelled;
 mod motion;
 pub mod needs;
 mod parts;

@@ -8,16 +8,16 @@ use glam::DVec3;
 use super::camera_path::CameraPath;
 use super::density;
 use super::description::{
-    AbsorptionDescription, FramesDescription, IntegratorKind, MaterialDescription, MediumDescription,
-    MeshDescription, Placement, SceneDescription, SkyDescription, SurfaceDescription,
+    FramesDescription, IntegratorKind, MaterialDescription, MediumDescription, MeshDescription, Placement,
+    SceneDescription, SkyDescription, SurfaceDescription,
 };
 use super::error::FrameError;
 use super::inputs::{ContentHash, Inputs};
+use super::modelled;
 use super::parts::Parts;
 use super::surface::MediumPair;
 use crate::light::{Environment, Sun};
 use crate::mesh::{Region, VelocityName};
-use crate::optics::RefractiveIndex;
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
 use crate::optics::similarity::Reduction;
@@ -72,7 +72,7 @@ impl World {
         let placement = *description.camera.placement.get_or_insert(placement);
         let origin = snapped(placement.eye);
         let camera = CameraPath::new(&description.camera, placement, origin);
-        let (mut media, names) = media_of(&description, mode);
+        let (mut media, names) = media_of(&description, mode)?;
         for medium in &mut media {
             let density = &description.media[&medium.name].density;
             medium.density = density::still(density, &description, origin, &mut inputs)?;
@@ -139,7 +139,7 @@ impl World {
     }
 
     fn still_parts(&self, inputs: &mut Inputs) -> Result<Parts, FrameError> {
-        let mut parts = Parts::default();
+        let mut parts = Parts { warnings: self.model_warnings(), ..Parts::default() };
         for surface in self.description.surfaces.iter().filter(|s| !has_place(&s.mesh)) {
             let path = self.description.directory.join(&surface.mesh);
             parts.add_surface(self, surface, inputs.mesh(&path, &VelocityName::Nothing)?, &path)?;
@@ -149,6 +149,14 @@ impl World {
             parts.add_body(self, which, inputs.mesh(&path, &VelocityName::Nothing)?, &path)?;
         }
         Ok(parts)
+    }
+
+    /// What is to be known of the models of media.
+    fn model_warnings(&self) -> Vec<String> {
+        let models = self.description.media.iter().filter_map(|(name, m)| Some((name, m.model.as_ref()?)));
+        let told =
+            models.flat_map(|(name, m)| m.warnings.iter().map(move |text| format!("[media.{name}] {text}")));
+        told.collect()
     }
 
     /// The medium that fills a region.
@@ -228,31 +236,41 @@ fn material_is_spectral(material: &MaterialDescription) -> bool {
 fn medium_is_spectral(medium: &MediumDescription) -> bool {
     let coefficients = match &medium.extinction {
         Some(given) => given.extinction.is_spectral() || given.albedo.is_spectral(),
-        None => absorption_of(medium).is_spectral() || medium.scattering.is_spectral(),
+        None => medium.absorbed().is_spectral() || medium.scattering.is_spectral(),
     };
-    coefficients || medium.emission.is_spectral()
+    coefficients || medium.emission.is_spectral() || medium.model.is_some()
 }
 
-fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTreeMap<String, MediumId>) {
+fn media_of(
+    description: &SceneDescription,
+    mode: LaneMode,
+) -> Result<(Vec<Medium>, BTreeMap<String, MediumId>), FrameError> {
     let outside = description.regions.get(&Region::OUTSIDE);
     let mut order: Vec<&String> = description.media.keys().collect();
     order.sort_by_key(|name| (Some(*name) != outside, *name));
-    let media = order.iter().map(|name| medium_of(name, &description.media[*name], mode)).collect();
+    let media = order.iter().map(|name| medium_of(description, name, mode)).collect::<Result<_, _>>()?;
     let names = order.into_iter().cloned().zip((0..).map(MediumId)).collect();
-    (media, names)
+    Ok((media, names))
 }
 
-fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
-    let [sigma_a, sigma_s] = coefficients_of(medium, mode);
-    Medium {
+fn medium_of(description: &SceneDescription, name: &str, mode: LaneMode) -> Result<Medium, FrameError> {
+    let medium = &description.media[name];
+    let ([sigma_a, sigma_s], phase) = match &medium.model {
+        Some(model) => modelled::light_in(model, mode).map_err(|source| {
+            let (scene, medium) = (description.file.clone(), name.to_owned());
+            FrameError::Mixture { scene, medium, source: Box::new(source) }
+        })?,
+        None => (coefficients_of(medium, mode), medium.phase.clone()),
+    };
+    Ok(Medium {
         name: name.into(),
         n: medium.ior.for_rays(),
         sigma_a,
         sigma_s,
         emission: medium.emission.prepare(Role::Illuminant, mode),
-        phase: medium.phase.clone(),
+        phase,
         density: Density::default(),
-    }
+    })
 }
 
 /// Absorption and scattering.
@@ -271,26 +289,10 @@ fn coefficients_of(medium: &MediumDescription, mode: LaneMode) -> [LaneCurve; 2]
             [share(&absorbed), share(&albedo)]
         }
         None => [
-            absorption_of(medium).prepare(Role::Coefficient, mode),
+            medium.absorbed().prepare(Role::Coefficient, mode),
             medium.scattering.prepare(Role::Coefficient, mode),
         ],
     }
-}
-
-/// Absorption as given, or what the index's imaginary part implies.
-fn absorption_of(medium: &MediumDescription) -> Spectrum {
-    match &medium.absorption {
-        Some(AbsorptionDescription::Spectrum(spectrum)) => spectrum.clone(),
-        Some(AbsorptionDescription::Water) => {
-            implied(&RefractiveIndex::Water { temperature: 20.0, salinity: 0.0 })
-        }
-        Some(AbsorptionDescription::Ice) => implied(&RefractiveIndex::Ice),
-        None => implied(&medium.ior),
-    }
-}
-
-fn implied(index: &RefractiveIndex) -> Spectrum {
-    index.absorption().unwrap_or(Spectrum::Constant(0.0))
 }
 
 fn environment_of(

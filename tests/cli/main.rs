@@ -8,6 +8,7 @@ mod folders;
 mod half_spaces;
 mod integrators;
 mod meshes;
+mod models;
 mod optics;
 mod preview;
 mod similarity;

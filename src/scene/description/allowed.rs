@@ -1,5 +1,7 @@
 //! Which numbers a key takes.
 
+use crate::optics::milk::PRESSURE_RANGE as MILK_PRESSURE;
+
 /// A range of numbers with the words that ask for one of them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Allowed {
@@ -70,6 +72,28 @@ impl Allowed {
     /// Temperature of liquid water in degrees Celsius.
     pub const CELSIUS_OF_WATER: Self =
         Self::closed(-10.0, 100.0, "a temperature from -10 to 100 degrees Celsius");
+    /// Any temperature in degrees Celsius that ice may have been said to have.
+    pub const CELSIUS: Self =
+        Self::closed(-273.15, 100.0, "a temperature from -273.15 to 100 degrees Celsius");
+    /// A share of a volume.
+    pub const VOLUME_FRACTION: Self = Self::closed(0.0, 1.0, "a share of the volume from 0 to 1");
+    /// A coefficient in 1/m that is not too large for anything.
+    pub const ABSORBED_AT_440: Self = Self::closed(0.0, 1e6, "an absorption at 440 nm from 0 to 1e6 1/m");
+    /// Density of ice with all that is in it.
+    pub const ICE_DENSITY: Self = Self::closed(1.0, 1000.0, "a density from 1 to 1000 kg/m^3");
+    /// Fat in milk.
+    pub const FAT: Self = Self::closed(0.0, 50.0, "fat from 0 to 50 % of the mass");
+    /// Protein in milk.
+    pub const PROTEIN: Self = Self::closed(0.0, 20.0, "protein from 0 to 20 % of the mass");
+    /// Pressure at which milk is homogenised.
+    pub const HOMOGENISATION: Self =
+        Self::closed(MILK_PRESSURE[0], MILK_PRESSURE[1], "a pressure from 0 to 50 MPa");
+    /// Radius of a particle.
+    pub const RADIUS: Self = Self::closed(1e-4, 3000.0, "a radius from 0.0001 to 3000 micrometres");
+    /// How steeply the number of particles falls with their radius.
+    pub const SIZE_EXPONENT: Self = Self::closed(-20.0, 20.0, "an exponent from -20 to 20");
+    /// Standard deviation of the logarithm of a radius.
+    pub const SIZE_DEVIATION: Self = Self::closed(1e-3, 2.0, "a deviation of ln r from 0.001 to 2");
     /// Salinity in parts per thousand.
     pub const SALINITY: Self = Self::closed(0.0, 100.0, "a salinity from 0 to 100 parts per thousand");
     /// Exposure in stops.

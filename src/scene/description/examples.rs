@@ -10,7 +10,7 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 10] = [
+pub const EXAMPLES: [Example; 11] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
@@ -21,6 +21,7 @@ pub const EXAMPLES: [Example; 10] = [
     Example { name: "phase functions", text: PHASE_FUNCTIONS },
     Example { name: "turbid", text: TURBID },
     Example { name: "moving camera", text: MOVING_CAMERA },
+    Example { name: "models", text: MODELS },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -311,4 +312,57 @@ eye = [
 target = [0, 0, 0]
 vertical_fov = 50
 turntable = { degrees_per_frame = -0.5 }
+"#;
+
+const MODELS: &str = r#"
+[media.baltic]
+model = "natural-water"
+preset = "baltic"
+temperature = 10
+salinity = 8
+cdom = 0.5
+phase = "lorenz-mie"
+
+[media.lake]
+model = "natural-water"
+temperature = 4
+salinity = 0
+mineral = 1e-7
+algae = 2e-7
+rock_flour = 1e-6
+molecular_scattering = true
+density = { stratified = 2 }
+
+[media.ice]
+model = "iceberg"
+temperature = -5
+salinity = 0
+ice_density = 894
+
+[media.waterline]
+model = "iceberg"
+preset = "green"
+algae = 2e-6
+phase = "henyey-greenstein"
+
+[media.milk]
+model = "milk"
+preset = "semi"
+protein = 3.3
+homogenisation_pressure = 20
+
+[media.cream]
+model = "milk"
+fat = 30
+
+[media.paint]
+model = "particles"
+ior = { table = "water", temperature = 20, salinity = 0 }
+absorption = [0.4, 0.1, 0.1]
+emission = 0.0
+species = [
+    { name = "titania", ior = { wavelength = [400, 700], n = [2.9, 2.6], k = [1e-3, 0] }, volume_fraction = 1e-3, sizes = { kind = "log-normal", median_um = 0.1, deviation = 0.2 } },
+    { name = "chalk", ior = 1.6, volume_fraction = 0.01, sizes = { kind = "power-law", exponent = 4, least_um = 0.1, greatest_um = 5 } },
+    { ior = 1.0, volume_fraction = 1e-4, sizes = { kind = "table", radius_um = [10, 20, 50], number = [0, 3, 1] } },
+]
 "#;

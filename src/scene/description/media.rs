@@ -1,4 +1,5 @@
-//! Reads `[media.NAME]`: refractive index, coefficients, emission, phase function and density.
+//! Reads `[media.NAME]`: refractive index, coefficients, emission, phase function and density, or what a model makes of
+//! what is in it.
 
 use std::collections::BTreeMap;
 
@@ -7,9 +8,11 @@ use super::error::SceneError;
 use super::nearest::suggestion;
 use super::value::Value;
 use super::{AbsorptionDescription, DensityDescription, MediumDescription};
-use super::{coefficients, density, phase, spectrum_value};
+use super::{coefficients, density, models, phase, spectrum_value};
 use crate::optics::RefractiveIndex;
+use crate::optics::particles::Mixture;
 use crate::optics::phase::{Isotropic, PhaseFunction};
+use crate::optics::refractive_index::REFERENCE_WAVELENGTH;
 use crate::spectrum::Spectrum;
 
 /// The medium that every scene has.
@@ -55,17 +58,28 @@ pub(super) fn existing_medium<T>(
 
 fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
     let table = value.table("a table such as [media.sea]")?;
-    let default = MediumDescription::default();
-    let coefficients = coefficients::read(&table, absorption)?;
     let emission = table.get("emission");
-    let medium = MediumDescription {
-        ior: table.get("ior").map_or(Ok(default.ior), |v| ior(&v))?,
-        absorption: coefficients.absorption,
-        scattering: coefficients.scattering,
-        extinction: coefficients.extinction,
-        emission: emission.as_ref().map_or(Ok(default.emission), spectrum_value::radiance)?,
-        phase: table.get("phase").map_or(Ok(default.phase), |v| phase::read(&v))?,
-        density: table.get("density").map_or(Ok(default.density), |v| density::read(&v))?,
+    let default = MediumDescription {
+        emission: emission.as_ref().map_or(Ok(Spectrum::Constant(0.0)), spectrum_value::radiance)?,
+        density: table.get("density").map_or(Ok(DensityDescription::Homogeneous), |v| density::read(&v))?,
+        ..MediumDescription::default()
+    };
+    let medium = match table.get("model") {
+        Some(model) => {
+            let model = models::read(&table, &model)?;
+            MediumDescription { ior: model.mixture.host.index.clone(), model: Some(model), ..default }
+        }
+        None => {
+            let coefficients = coefficients::read(&table, absorption)?;
+            MediumDescription {
+                ior: table.get("ior").map_or(Ok(default.ior), |v| ior(&v))?,
+                absorption: coefficients.absorption,
+                scattering: coefficients.scattering,
+                extinction: coefficients.extinction,
+                phase: table.get("phase").map_or(Ok(default.phase), |v| phase::read(&v))?,
+                ..default
+            }
+        }
     };
     table.finish()?;
     match emission {
@@ -76,14 +90,36 @@ fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
     }
 }
 
+impl AbsorptionDescription {
+    /// What is given in 1/m, or what the imaginary part of an index implies.
+    pub fn or_implied(given: Option<&Self>, ior: &RefractiveIndex) -> Spectrum {
+        let implied = |index: &RefractiveIndex| index.absorption().unwrap_or(Spectrum::Constant(0.0));
+        match given {
+            Some(Self::Spectrum(spectrum)) => spectrum.clone(),
+            Some(Self::Water) => implied(&RefractiveIndex::Water { temperature: 20.0, salinity: 0.0 }),
+            Some(Self::Ice) => implied(&RefractiveIndex::Ice),
+            None => implied(ior),
+        }
+    }
+}
+
 impl MediumDescription {
+    /// Absorption in 1/m of a medium without a model, as given or implied by its index.
+    pub fn absorbed(&self) -> Spectrum {
+        AbsorptionDescription::or_implied(self.absorption.as_ref(), &self.ior)
+    }
+
     /// Whether anything is absorbed.
     fn absorbs(&self) -> bool {
-        match (&self.extinction, &self.absorption) {
-            (Some(given), _) => !given.extinction.is_zero() && given.albedo != Spectrum::Constant(1.0),
-            (None, Some(AbsorptionDescription::Spectrum(spectrum))) => !spectrum.is_zero(),
-            (None, Some(AbsorptionDescription::Water | AbsorptionDescription::Ice)) => true,
-            (None, None) => self.ior.absorption().is_some_and(|implied| !implied.is_zero()),
+        match (&self.model, &self.extinction) {
+            // Of particles alone k is what absorbs.
+            (Some(model), _) => {
+                let absorbing = |index: &RefractiveIndex| index.k(REFERENCE_WAVELENGTH) > 0.0;
+                let Mixture { host, species } = &model.mixture;
+                !host.absorption.is_zero() || species.iter().any(|species| absorbing(&species.index))
+            }
+            (None, Some(given)) => !given.extinction.is_zero() && given.albedo != Spectrum::Constant(1.0),
+            (None, None) => !self.absorbed().is_zero(),
         }
     }
 }
@@ -99,6 +135,7 @@ impl Default for MediumDescription {
             emission: Spectrum::Constant(0.0),
             phase: PhaseFunction::Isotropic(Isotropic),
             density: DensityDescription::Homogeneous,
+            model: None,
         }
     }
 }
@@ -113,7 +150,7 @@ enum Substance {
 const SUBSTANCES: [(&str, Substance); 2] = [("water", Substance::Water), ("ice", Substance::Ice)];
 
 /// `ior = ..`
-fn ior(value: &Value<'_>) -> Result<RefractiveIndex, SceneError> {
+pub(super) fn ior(value: &Value<'_>) -> Result<RefractiveIndex, SceneError> {
     const FORMS: &str =
         "a number, { table = \"water\" }, { table = \"ice\" }, or { wavelength = [..], n = [..], k = [..] }";
     if value.is_number() {
@@ -145,7 +182,7 @@ fn ior(value: &Value<'_>) -> Result<RefractiveIndex, SceneError> {
 }
 
 /// `absorption = ..`
-fn absorption(value: &Value<'_>) -> Result<AbsorptionDescription, SceneError> {
+pub(super) fn absorption(value: &Value<'_>) -> Result<AbsorptionDescription, SceneError> {
     if !value.has_key("table") {
         let spectrum = spectrum_value::spectrum(value, &Allowed::NOT_NEGATIVE)?;
         return Ok(AbsorptionDescription::Spectrum(spectrum));

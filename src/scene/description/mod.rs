@@ -19,6 +19,7 @@ mod framing;
 mod material;
 mod media;
 mod meshes;
+mod models;
 mod nearest;
 mod output;
 mod phase;
@@ -37,6 +38,7 @@ pub use examples::{EXAMPLES, Example};
 pub use framed::default_scene;
 pub use framing::automatic_placement;
 pub use meshes::{MeshContents, MeshDescription};
+pub use models::{Model, ModelKind, ModelPhase};
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -193,6 +195,8 @@ pub struct MediumDescription {
     pub phase: PhaseFunction,
     /// Where the medium is how dense.
     pub density: DensityDescription,
+    /// What takes the place of index, coefficients and phase function.
+    pub model: Option<Model>,
 }
 
 /// `extinction = ..`, `albedo = ..`

@@ -1,0 +1,12 @@
+//! Pure ice, and ice with air and brine in it.
+//!
+//! [`index`](self::refractive_index()) is ice itself; [`iceberg`] adds what it encloses.
+
+mod brine_volume;
+pub mod iceberg;
+mod inclusions;
+mod index;
+
+pub use brine_volume::{IceContents, IceError, TEMPERATURE_RANGE, contents, density};
+pub use inclusions::{air, brine};
+pub use index::{absorption, extinction_index, refractive_index};
