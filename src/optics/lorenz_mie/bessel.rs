@@ -39,12 +39,8 @@ pub(super) fn beginning(z: Complex64, last: usize) -> usize {
 /// E_n(z) of (2) for each n of `kept`, of 1/z in every lane. A lane begins at its own place, whatever the others do.
 #[inline(always)]
 pub(super) fn deviations<const N: usize>(inverse: &Lanes<N>, beginnings: &[usize; N], kept: &mut [Lanes<N>]) {
-    let mut from = 0;
-    let mut begin = [0.0; N];
-    for i in 0..N {
-        begin[i] = beginnings[i] as f64;
-        from = from.max(beginnings[i]);
-    }
+    let from = beginnings.iter().copied().max().unwrap_or(0);
+    let begin = beginnings.map(|n| n as f64);
     let (mut next, mut unused) = (Lanes::ZERO, Lanes::ZERO);
     for n in (kept.len()..from).rev() {
         descend(n as f64 + 1.0, inverse, &begin, &mut next, &mut unused);
@@ -63,13 +59,13 @@ fn descend<const N: usize>(
     next: &mut Lanes<N>,
     place: &mut Lanes<N>,
 ) {
-    for i in 0..N {
+    for (i, begin) in begin.iter().enumerate() {
         let ratio = scaled(inverse.at(i), n);
         let sum = plus(ratio, next.at(i));
         let scale = 1.0 / square(sum);
         let deviation = Complex64::new(-sum.re * scale, sum.im * scale); // (2)
         place.set(i, deviation);
-        next.set(i, choose(n <= begin[i], plus(ratio, deviation), Complex64::ZERO));
+        next.set(i, choose(n <= *begin, plus(ratio, deviation), Complex64::ZERO));
     }
 }
 

@@ -51,9 +51,10 @@ pub(super) fn filled(spheres: &[Sphere], places: &[usize]) -> [Sphere; LANES] {
     std::array::from_fn(|lane| spheres[places[lane.min(places.len() - 1)]])
 }
 
-struct Summing<'a> {
-    group: &'a [Sphere; LANES],
-    memory: &'a mut SideBySide<LANES>,
+/// Coefficients of a group, which stay in the memory, and their sums.
+pub(super) struct Summing<'a> {
+    pub group: &'a [Sphere; LANES],
+    pub memory: &'a mut SideBySide<LANES>,
 }
 
 impl Work for Summing<'_> {

@@ -1,7 +1,7 @@
 """Efficiencies of many spheres: floe against miepython, one thread each.
 
 Both compute extinction, scattering, backscattering and asymmetry of 1000 radii at 40 wavelengths, as
-`tests/bench/particles` describes, in turns; the least user CPU seconds of some passes count. miepython is compiled by
+`tests/bench/spheres` describes, in turns; the least user CPU seconds of some passes count. miepython is compiled by
 numba, and what compiling takes is not counted. Extinction, scattering and asymmetry are compared by their sums: miepython
 ends its series earlier, which leaves some 1e-6.
 
@@ -40,7 +40,7 @@ def of_miepython():
 
 def of_floe():
     """The same, by the bench that stands beside this folder."""
-    command = ["cargo", "bench", "--quiet", "--bench", "particles"]
+    command = ["cargo", "bench", "--quiet", "--bench", "spheres"]
     printed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     words = next(line for line in printed.splitlines() if line.startswith("floe")).split()
     return float(words[1]), np.array([float(word) for word in words[2:]])
