@@ -10,6 +10,7 @@ mod common;
 
 mod analytic {
     mod boundaries;
+    mod clear_sky;
     mod environment;
     mod estimates;
     mod fog;

@@ -58,6 +58,19 @@ fn pictures(folder: &Folder, frames: &str, threads: usize) -> (Pictures, Vec<boo
     (pictures, report.frames.iter().map(|record| record.refitted).collect())
 }
 
+/// The sky's tables are made anew in each run.
+#[test]
+fn a_clear_sky_is_the_same_on_any_number_of_threads() {
+    let scene = shipped_scene(4);
+    let (before, rest) = scene.split_once("[sky]\n").unwrap();
+    let (_, after) = rest.split_once('\n').unwrap();
+    let sky = "[sky]\nradiance = { model = \"hosek-wilkie\" }\n[sun]\nelevation = 20\nazimuth = 40\n";
+    let folder = wobbling_in(&format!("{before}{sky}{after}"));
+    let (one, _) = pictures(&folder, "0", 1);
+    assert_eq!(one.len(), 2);
+    assert_eq!(pictures(&folder, "0", 5).0, one);
+}
+
 #[test]
 fn threads_order_company_and_repetition_change_no_byte() {
     let folder = wobbling();

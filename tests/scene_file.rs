@@ -12,6 +12,7 @@ use proptest::prelude::*;
 
 mod scene_file {
     mod camera;
+    mod daylight;
     mod models;
 }
 
@@ -230,8 +231,6 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[[meshes]]\npath = 'a.ply'\nprioritie = 1", 3, 1, "unknown key `prioritie` in meshes[0]; did you mean `priority`?"),
     ("[camera]\neye = [1, 1, 1]", 1, 1, "[camera] has no `target`"),
     ("[camera]\ntarget = [1, 1, 1]", 1, 1, "[camera] has no `eye`"),
-    ("[sun]\nirradiance = 1", 1, 1, "[sun] has no `direction`"),
-    ("[sun]\ndirection = [0, 0, 1]", 1, 1, "[sun] has no `irradiance`"),
     ("[sky]", 1, 1, "[sky] has no `radiance`"),
     ("[domain]", 1, 1, "[domain] has no `box`"),
     ("[[surfaces]]\nmaterial = { kind = 'null' }", 1, 1, "surfaces[0] has no `mesh`"),
@@ -245,8 +244,6 @@ const WRONG_KEYS: &[Wrong] = &[
     ("[media.a]\nphase = { kind = 'two-term-schlick', k1 = 0.1 }", 2, 9, "has no `share`"),
     ("[media.a]\nphase = { kind = 'fournier-forand', ior = 1.1 }", 2, 9, "has no `mu`"),
     ("[media.a]\nior = { n = [1.3] }", 2, 7, "[media.a.ior] has no `wavelength`"),
-    ("[sun]\ndirection = [0, 0, 1]\nirradiance = { blackbody = 5778 }", 3, 14, "[sun.irradiance] has no `illuminance`"),
-    ("[sun]\ndirection = [0, 0, 1]\nirradiance = { illuminance = 9 }", 3, 14, "[sun.irradiance] has no `blackbody`"),
 ];
 
 /// Texts that are not TOML, and wrong types.
@@ -353,11 +350,6 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[[surfaces]]\nmesh = 'a'\nmaterial = { kind = 'conductor', eta = 0, k = 1 }", 3, 40, "write a number above 0"),
     ("[[surfaces]]\nmesh = 'a'\nmaterial = { kind = 'diffuse' }\ntransform = { scale = -1 }", 4, 23,
      "surfaces[0].transform.scale: -1"),
-    ("[sun]\ndirection = [0, 0, 0]\nirradiance = 1", 2, 13, "[0, 0, 0]: write a direction that is not zero"),
-    ("[sun]\ndirection = [0, 0, 1]\nirradiance = 1\nangular_diameter = 0", 4, 20, "write an angle between 0 and 180"),
-    ("[sun]\ndirection = [0, 0, 1]\nirradiance = -1", 3, 14, "sun.irradiance: -1: write a number that is not below"),
-    ("[sun]\ndirection = [0, 0, 1]\nirradiance = { blackbody = 20, illuminance = 1 }", 3, 28,
-     "write a temperature from 500 to 1e6 kelvin"),
     ("[sky]\nradiance = { blackbody = 0 }", 2, 26, "sky.radiance.blackbody: 0: write a temperature from 1 to 1e6"),
     ("[camera]\nup = [0, 0, 0]", 2, 6, "camera.up: [0, 0, 0]: write a direction that is not zero"),
     ("[camera]\nvertical_fov = 180", 2, 16, "camera.vertical_fov: 180: write an angle between 0 and 180 degrees"),

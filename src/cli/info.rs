@@ -14,7 +14,9 @@ use crate::mesh::Region;
 use crate::optics::density::Density;
 use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::camera_path::StartPlaces;
-use crate::scene::description::{DensityDescription, MeshContents, Model};
+use crate::scene::description::{
+    Axis, Daylight, DensityDescription, MeshContents, Model, SceneDescription, SkyDescription,
+};
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
 use crate::spectrum::LaneMode;
@@ -96,7 +98,34 @@ fn describe_job(job: &Job) -> String {
         LaneMode::Spectral => "four wavelengths of 380 to 780 nm",
     };
     let _ = writeln!(text, "lanes     {lanes}");
-    text + &describe_meshes(job) + &describe_media(world)
+    text + &describe_lights(&world.description) + &describe_meshes(job) + &describe_media(world)
+}
+
+fn describe_lights(scene: &SceneDescription) -> String {
+    let up = scene.frames.as_ref().map_or(Axis::Z, |frames| frames.up);
+    let daylight = Daylight::new(scene.sun.as_ref(), &scene.sky, up);
+    let mut text = String::new();
+    if let Some(sun) = &scene.sun {
+        let [elevation, azimuth] = sun.angles(up);
+        let _ = writeln!(
+            text,
+            "sun       elevation {elevation:.2}, azimuth {azimuth:.2} degrees, {:.0} lx, {:.0} on level ground",
+            daylight.sun, daylight.sun_level
+        );
+    }
+    match (&scene.sky, daylight.sky_level) {
+        (SkyDescription::Image { image }, _) => {
+            let _ = writeln!(text, "sky       {image}");
+        }
+        (_, Some(lux)) if lux > 0.0 => {
+            let _ = writeln!(text, "sky       {lux:.0} lx on level ground");
+        }
+        _ => (),
+    }
+    if scene.output.exposure != 0.0 {
+        let _ = writeln!(text, "exposure  {:+.1} stops", scene.output.exposure);
+    }
+    text
 }
 
 fn describe_meshes(job: &Job) -> String {

@@ -1,17 +1,16 @@
-//! Light from infinity: constant, or a latitude-longitude picture.
+//! Light from infinity: constant, a latitude-longitude picture, or a clear sky.
 //!
-//! The picture's top row is straight up, its columns run once around the horizon: with z up, the left edge is the
-//! direction -x, a quarter of the width is -y, the middle is +x and three quarters is +y. Radiance is interpolated
+//! The picture lies around the scene as a [`SphereMap`] does, its top row straight up. Radiance is interpolated
 //! between the texels' centres; directions are drawn in proportion to the interpolated picture's integral over each texel
 //! times the sine of the polar angle.
 
-use std::f32::consts::{FRAC_1_PI, PI};
+use std::f32::consts::FRAC_1_PI;
 
 use glam::{DVec3, Vec3};
 
-use super::{LightSample, Picture};
-use crate::geometry::elementary::{atan2, sin_cos};
-use crate::sampling::{Distribution2d, warp};
+use super::sphere_map::{SphereMap, contrast_of};
+use super::{ClearSky, LightSample, Picture};
+use crate::sampling::warp;
 use crate::spectrum::light_primaries::radiance_lanes;
 use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths};
 
@@ -25,16 +24,16 @@ pub enum Environment {
     Constant(LaneCurve),
     /// A picture of the whole sphere.
     Image(Box<ImageEnvironment>),
+    /// A clear sky by day, over even ground.
+    Clear(Box<ClearSky>),
 }
 
 /// A picture of the sphere with its sampling tables.
 #[derive(Clone, Debug)]
 pub struct ImageEnvironment {
     picture: Picture,
-    /// The axes that play x, y, z of the module's description.
-    axes: [Vec3; 3],
+    map: SphereMap,
     mode: LaneMode,
-    distribution: Option<Distribution2d>,
     /// Mean over the sphere, linear RGB.
     mean: Vec3,
     /// [`Environment::is_peaked`]
@@ -44,13 +43,11 @@ pub struct ImageEnvironment {
 impl Environment {
     /// A picture whose top is towards the unit vector `up` (a coordinate axis).
     pub fn image(picture: Picture, up: Vec3, mode: LaneMode) -> Self {
-        // A cyclic permutation keeps the picture from being mirrored; z up leaves the axes alone.
-        let x = Vec3::new(up.z.abs(), up.x.abs(), up.y.abs());
-        let axes = [x, up.cross(x), up];
-        let distribution = distribution_of(&picture);
+        let brightness = brightness_of(&picture);
+        let map = SphereMap::new(up, picture.width, &weights_of(picture.width, &brightness));
         let mean = mean_of(&picture);
-        let peaked = contrast_of(&picture) > PEAKED;
-        Self::Image(Box::new(ImageEnvironment { picture, axes, mode, distribution, mean, peaked }))
+        let peaked = contrast_of(picture.width, &brightness) > PEAKED;
+        Self::Image(Box::new(ImageEnvironment { picture, map, mode, mean, peaked }))
     }
 
     /// True when it is the same from everywhere and not black.
@@ -63,12 +60,24 @@ impl Environment {
     /// That is where the mean square over the sphere is more than 16 times the squared mean, which is the relative
     /// variance of a random direction, and 1.
     pub fn is_peaked(&self) -> bool {
-        matches!(self, Self::Image(image) if image.peaked)
+        match self {
+            Self::Constant(_) => false,
+            Self::Image(image) => image.peaked,
+            Self::Clear(sky) => sky.contrast() > PEAKED,
+        }
     }
 
     /// True when next-event estimation looks for it.
     pub fn is_sampled(&self) -> bool {
-        matches!(self, Self::Image(image) if image.distribution.is_some())
+        self.map().is_some_and(SphereMap::is_sampled)
+    }
+
+    fn map(&self) -> Option<&SphereMap> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Image(image) => Some(&image.map),
+            Self::Clear(sky) => Some(sky.map()),
+        }
     }
 
     /// Radiance that arrives from `direction`.
@@ -76,6 +85,7 @@ impl Environment {
         match self {
             Self::Constant(curve) => curve.lanes(wavelengths),
             Self::Image(image) => image.radiance(direction, wavelengths),
+            Self::Clear(sky) => sky.radiance(direction, wavelengths),
         }
     }
 
@@ -84,18 +94,13 @@ impl Environment {
         match self {
             Self::Constant(curve) => curve.lanes(wavelengths),
             Self::Image(image) => radiance_lanes(image.mode, image.mean, wavelengths),
+            Self::Clear(sky) => sky.mean_radiance(wavelengths),
         }
     }
 
-    /// A direction drawn in proportion to the picture; `None` for a constant or black sky.
+    /// A direction drawn in proportion to the radiance; `None` for a constant or black sky.
     pub fn sample(&self, u: [f32; 2], wavelengths: &Wavelengths) -> Option<LightSample> {
-        let Self::Image(image) = self else { return None };
-        let (point, density) = image.distribution.as_ref()?.sample(u);
-        let (sin, cos) = sin_cos(point[1] * PI);
-        let (sin_phi, cos_phi) = sin_cos((2.0 * point[0] - 1.0) * PI);
-        let [x, y, z] = image.axes;
-        let wi = (x * (sin * cos_phi) + y * (sin * sin_phi) + z * cos).normalize();
-        let pdf_w = solid_angle_density(density, sin)?;
+        let (wi, pdf_w) = self.map()?.sample(u)?;
         let radiance = self.radiance(wi, wavelengths);
         Some(LightSample { wi, distance: f32::INFINITY, triangle: None, radiance, pdf_w })
     }
@@ -110,41 +115,13 @@ impl Environment {
 
     /// Density per solid angle of [`Environment::sample`]; 0 where it is not sampled.
     pub fn pdf_w(&self, direction: Vec3) -> f32 {
-        let Self::Image(image) = self else { return 0.0 };
-        let Some(distribution) = &image.distribution else {
-            return 0.0;
-        };
-        let point = image.square(direction);
-        solid_angle_density(distribution.pdf(point), image.polar(direction)[0]).unwrap_or(0.0)
+        self.map().map_or(0.0, |map| map.pdf_w(direction))
     }
-}
-
-/// The map from the unit square spreads it over 2 pi^2 sin(theta) steradians per unit of area.
-fn solid_angle_density(density: f32, sin: f32) -> Option<f32> {
-    (sin > 0.0 && density > 0.0).then(|| density / (2.0 * PI * PI * sin))
 }
 
 impl ImageEnvironment {
-    /// Where a direction lies on the picture, both in [0, 1).
-    fn square(&self, direction: Vec3) -> [f32; 2] {
-        let [x, y] = [0, 1].map(|axis| direction.dot(self.axes[axis]));
-        let [sin, cos] = self.polar(direction);
-        let below_one = 1.0 - f32::EPSILON * 0.5;
-        [
-            (0.5 + 0.5 * FRAC_1_PI * atan2(y, x)).clamp(0.0, below_one),
-            (atan2(sin, cos) * FRAC_1_PI).min(below_one),
-        ]
-    }
-
-    /// Sine and cosine of the polar angle; the sine from the other two axes, since near the poles the cosine has no
-    /// digits of it.
-    fn polar(&self, direction: Vec3) -> [f32; 2] {
-        let [x, y, z] = self.axes.map(|axis| direction.dot(axis));
-        [(x * x + y * y).sqrt(), z]
-    }
-
     fn radiance(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
-        let [x, y] = self.square(direction);
+        let [x, y] = self.map.square(direction);
         let (width, height) = (self.picture.width, self.picture.height);
         let (x, y) = (x * width as f32 - 0.5, y * height as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
@@ -158,12 +135,15 @@ impl ImageEnvironment {
     }
 }
 
+fn brightness_of(picture: &Picture) -> Vec<f64> {
+    picture.texels.iter().map(|t| f64::from(t.element_sum()) / 3.0).collect()
+}
+
 /// Weights of the texels: the integral of the interpolated picture over each, times the sine of the polar angle.
-fn distribution_of(picture: &Picture) -> Option<Distribution2d> {
+fn weights_of(width: usize, brightness: &[f64]) -> Vec<f64> {
     // A tent over three texels integrates to 1/8, 6/8 and 1/8 of them over the middle one.
     const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
-    let (width, height) = (picture.width, picture.height);
-    let brightness: Vec<f64> = picture.texels.iter().map(|t| f64::from(t.element_sum()) / 3.0).collect();
+    let height = brightness.len() / width;
     let mut weights = Vec::with_capacity(width * height);
     for j in 0..height {
         let sine = libm::sin(std::f64::consts::PI * (j as f64 + 0.5) / height as f64);
@@ -178,22 +158,7 @@ fn distribution_of(picture: &Picture) -> Option<Distribution2d> {
             weights.push(sum * sine);
         }
     }
-    Distribution2d::new(width, &weights)
-}
-
-/// The mean square over the sphere, over the square of the mean; 0 for a black picture.
-fn contrast_of(picture: &Picture) -> f64 {
-    let (mut weight, mut mean, mut square) = (0.0, 0.0, 0.0);
-    for (j, row) in picture.texels.chunks(picture.width).enumerate() {
-        let sine = libm::sin(std::f64::consts::PI * (j as f64 + 0.5) / picture.height as f64);
-        for texel in row {
-            let brightness = f64::from(texel.element_sum());
-            weight += sine;
-            mean += sine * brightness;
-            square += sine * brightness * brightness;
-        }
-    }
-    if mean > 0.0 { square * weight / (mean * mean) } else { 0.0 }
+    weights
 }
 
 /// The mean over the sphere of the interpolated picture.
@@ -222,7 +187,10 @@ fn mean_of(picture: &Picture) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::PI;
+
     use super::*;
+    use crate::geometry::elementary::sin_cos;
 
     /// Against the midpoint rule over 400 x 800 directions, whose error for the kinks of a linear interpolation is a
     /// few of (1/400)^2: below 5e-5.
@@ -239,7 +207,10 @@ mod tests {
             let bright = if rows == height { 1.0 } else { (1.0 - share) / share };
             let expected = if rows == height { 1.0 } else { 0.25 * (1.0 / share + 1.0 / (1.0 - share)) };
             let picture = Picture { width, height, texels: texels(bright as f32) };
-            assert!((contrast_of(&picture) / expected - 1.0).abs() < 1e-3, "{expected}");
+            assert!(
+                (contrast_of(width, &brightness_of(&picture)) / expected - 1.0).abs() < 1e-3,
+                "{expected}"
+            );
             assert_eq!(Environment::image(picture, Vec3::Z, LaneMode::Rgb).is_peaked(), peaked, "{expected}");
         }
     }

@@ -4,7 +4,8 @@
 //! balance heuristic weights the two `[VEACH97 section 9.2.2]`.
 //!
 //! * A constant sky is found by chance only: directions drawn from the surface or phase function are already right.
-//! * A picture of the sky is importance sampled.
+//! * A picture of the sky is importance sampled, and so is a clear sky ([`clear_sky`]), which comes from the same sun and
+//!   air as the sun's beam ([`atmosphere`]).
 //! * The sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
 //!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out.
 //! * Emitting triangles are sampled by area.
@@ -17,13 +18,19 @@
 //! ```
 
 pub mod area;
+pub mod atmosphere;
 pub mod beneath;
+pub mod clear_sky;
 pub mod environment;
+mod hosek_wilkie;
 mod picture;
+mod sphere_map;
 pub mod sun;
+pub mod sun_position;
 
 pub use area::AreaLights;
 pub use beneath::Beneath;
+pub use clear_sky::{ClearAir, ClearSky};
 pub use environment::Environment;
 pub use picture::{ImageError, Picture};
 pub(crate) use picture::{check_exr_size, read_exr};

@@ -16,7 +16,7 @@ use super::inputs::{ContentHash, Inputs};
 use super::modelled;
 use super::parts::Parts;
 use super::surface::MediumPair;
-use crate::light::{Environment, Sun};
+use crate::light::{ClearSky, Environment, Sun};
 use crate::mesh::{Region, VelocityName};
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
@@ -219,7 +219,11 @@ fn lane_mode(description: &SceneDescription) -> LaneMode {
     let spectral = description.media.values().any(medium_is_spectral)
         || description.surfaces.iter().any(|s| material_is_spectral(&s.material))
         || description.sun.as_ref().is_some_and(|sun| sun.irradiance.is_spectral())
-        || matches!(&description.sky, SkyDescription::Constant(sky) if sky.is_spectral())
+        || match &description.sky {
+            SkyDescription::Constant(sky) => sky.is_spectral(),
+            SkyDescription::Image { .. } => false,
+            SkyDescription::Clear(_) => true,
+        }
         || description.domain.as_ref().is_some_and(|d| d.reflectance.is_spectral());
     if spectral { LaneMode::Spectral } else { LaneMode::Rgb }
 }
@@ -300,15 +304,21 @@ fn environment_of(
     mode: LaneMode,
     inputs: &mut Inputs,
 ) -> Result<Environment, FrameError> {
-    match &description.sky {
-        SkyDescription::Constant(radiance) => {
+    let up = description.frames.as_ref().map_or(super::description::Axis::Z, |f| f.up).vector();
+    match (&description.sky, &description.sun) {
+        (SkyDescription::Constant(radiance), _) => {
             Ok(Environment::Constant(radiance.prepare(Role::Illuminant, mode)))
         }
-        SkyDescription::Image { image } => {
+        (SkyDescription::Image { image }, _) => {
             let picture = inputs.picture(&description.directory.join(image))?;
-            let up = description.frames.as_ref().map_or(super::description::Axis::Z, |f| f.up);
-            Ok(Environment::image(picture, up.vector(), mode))
+            Ok(Environment::image(picture, up, mode))
         }
+        (SkyDescription::Clear(air), Some(sun)) => {
+            let sky = ClearSky::new(*air, sun.direction, &sun.irradiance, up, mode);
+            Ok(Environment::Clear(Box::new(sky)))
+        }
+        // No scene file says this: a clear sky without a sun is night.
+        (SkyDescription::Clear(_), None) => Ok(Environment::Constant(LaneCurve::Constant(0.0))),
     }
 }
 

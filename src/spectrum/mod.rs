@@ -16,6 +16,7 @@ pub mod lab;
 pub mod light_primaries;
 pub mod luminance;
 pub mod rgb;
+pub mod solar;
 pub mod wavelength;
 
 use glam::Vec4;

@@ -43,6 +43,18 @@ fn a_folder_for_each_time_is_a_sequence() {
     assert_eq!(pictures(&folder), ["out/f_0.00001.exr", "out/f_0.5.exr"]);
 }
 
+/// The illuminances of `[sun]` and `[sky]`, and the exposure that follows from them.
+#[test]
+fn info_prints_where_the_sun_stands_and_the_light_of_sun_and_sky() {
+    let folder = Folder::new();
+    let sky = "[sky]\nradiance = { model = \"hosek-wilkie\" }\n";
+    folder.write("scene.toml", format!("[sun]\nelevation = 60\nazimuth = 200.5\n{sky}"));
+    let info = floe(&folder, &["info", "scene.toml"]).ended(0).stdout;
+    for words in ["elevation 60.00, azimuth 200.50 degrees, 91", "sky       16", "exposure  -5.6 stops"] {
+        assert!(info.contains(words), "no `{words}` in {info}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_written_scene_may_be_read_by_others_as_any_new_file() {

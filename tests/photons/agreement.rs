@@ -43,6 +43,29 @@ fn compare(folder: &SceneFolder, text: &str, settings: &[(&str, &str)], radius: 
     }
 }
 
+/// A glass ball in the light of a clear sky whose sun is dark, since paths have no sun through glass.
+#[test]
+fn a_ball_under_a_clear_sky() {
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("ball.ply", &sphere(DVec3::new(0.0, 0.0, 0.7), 0.6, 2));
+    let text = format!(
+        "[[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 0.6 }}\n{VIEW}\
+         [media.glass]\nior = 1.5\n[[surfaces]]\nmesh = \"ball.ply\"\nfront = \"air\"\nback = \"glass\"\n\
+         material = {{ kind = \"dielectric\" }}\n[sun]\nelevation = 35\nazimuth = 60\nirradiance = 0\n\
+         [sky]\nradiance = {{ model = \"hosek-wilkie\", turbidity = 4 }}\n"
+    );
+    let by_paths = Seeds::render(&folder.scene(&text), 1024, 4, GRID).means();
+    let render = format!(
+        "{text}[render]\nintegrator = \"photon\"\n\
+         photons = {{ count = 20000, sky = true, final_gather = false }}\n"
+    );
+    let [near, middle, wide] = [1.0, 2.0, 4.0]
+        .map(|factor| Seeds::render(&with_radius(folder.scene(&render), factor * 0.03), 64, 4, GRID));
+    let by_photons = Seeds::extrapolated(&near, &middle, &wide).means();
+    assert_agree("clear sky", &by_photons, &by_paths, 0.05);
+}
+
 /// Eight triangles around each half of the ball: normals that lean far from those of the facets, so that many
 /// directions are decided by one normal or the other.
 #[test]

@@ -1,11 +1,11 @@
-//! Directions drawn towards pictures of the sky and emitting triangles.
+//! Directions drawn towards pictures of the sky, clear skies and emitting triangles.
 
 use std::f64::consts::PI;
 use std::io::Cursor;
 
 use exr::prelude::*;
 use floe::light::area::EmitterTriangle;
-use floe::light::{AreaLights, Environment, LightSample, Picture};
+use floe::light::{AreaLights, ClearAir, ClearSky, Environment, LightSample, Picture};
 use floe::sampling::warp;
 use floe::spectrum::{LaneMode, Role, Spectrum, Wavelengths};
 use glam::Vec3;
@@ -137,6 +137,53 @@ fn a_picture_states_the_density_of_its_samples() {
             assert_eq!(sample.radiance, sky.radiance(sample.wi, &wavelengths()));
         }
         assert!(off < 20, "{off} of 20000 samples state another density than pdf_w");
+    }
+}
+
+fn clear_sky(degrees: f32, up: Vec3) -> ClearSky {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let ahead = Vec3::new(up.y, up.z, up.x);
+    let air = ClearAir { turbidity: 2.5, ground_albedo: 0.3 };
+    ClearSky::new(air, ahead * cos + up * sin, &Spectrum::Constant(1.0), up, LaneMode::Spectral)
+}
+
+/// Cells of the sky's own are 1.4 degrees: the quadrature of `probabilities` is finer.
+#[test]
+fn directions_towards_a_clear_sky_follow_its_density() {
+    for (seed, (degrees, up)) in (230..).zip([(50.0, Vec3::Z), (4.0, Vec3::Y), (90.0, Vec3::NEG_X)]) {
+        let sky = Environment::Clear(Box::new(clear_sky(degrees, up)));
+        let name = format!("clear sky, sun at {degrees}, {up} up");
+        let cells = normalised(&name, probabilities(|d| f64::from(sky.pdf_w(d))), 3e-3);
+        assert_fits(&name, seed, &coarse(&cells), |u| {
+            let wi = sky.sample(u, &wavelengths()).map_or(Vec3::Z, |s| s.wi);
+            cell(wi) / COLUMNS / 8 * 4 + cell(wi) % COLUMNS / 6
+        });
+    }
+}
+
+/// Radiance over density has the mean that the sky states, 4 pi times, and next to no spread: cells are small and the four
+/// wavelengths of sampling are not the one of the test. Significance 1e-4 (4.06 standard errors, three skies); the
+/// quadrature of the mean adds 1e-4.
+#[test]
+fn the_clear_skys_samples_have_its_mean() {
+    for (seed, degrees) in (7..).zip([60.0, 20.0, 1.0]) {
+        let sky = Environment::Clear(Box::new(clear_sky(degrees, Vec3::Z)));
+        let wavelengths = Wavelengths { lambda: [450.0, 500.0, 550.0, 650.0], pdf: [1.0; 4] };
+        let mut random = SplitMix(seed);
+        let (mut sum, mut square, count) = (0.0, 0.0, 100_000);
+        for _ in 0..count {
+            let Some(sample) = sky.sample(random.pair(), &wavelengths) else { panic!("a bright sky") };
+            assert_eq!(sample.radiance, sky.radiance(sample.wi, &wavelengths));
+            let weight = f64::from(sample.radiance.z / sample.pdf_w);
+            (sum, square) = (sum + weight, square + weight * weight);
+        }
+        let mean = sum / f64::from(count);
+        let spread = (square / f64::from(count) - mean * mean).sqrt();
+        let stated = 4.0 * PI * f64::from(sky.mean_radiance(&wavelengths).z);
+        println!("sun at {degrees}: {mean:.5} for {stated:.5}, spread {:.3}", spread / mean);
+        let allowed = 4.06 * spread / f64::from(count).sqrt() + 1e-4 * stated;
+        assert!((mean - stated).abs() < allowed, "{mean} {stated} +- {allowed}");
+        assert!(spread < 0.5 * mean, "{spread}");
     }
 }
 

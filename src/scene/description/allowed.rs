@@ -55,6 +55,12 @@ impl Allowed {
     pub const DEFLECTION: Self = Self::closed(0.0, 180.0, "an angle from 0 to 180 degrees");
     /// An angle in degrees below a half turn.
     pub const HALF_TURN: Self = Self::open(0.0, 180.0, "an angle between 0 and 180 degrees, both excluded");
+    /// An angle above the horizon, or north of the equator, in degrees.
+    pub const QUARTER_TURN: Self = Self::closed(-90.0, 90.0, "an angle from -90 to 90 degrees");
+    /// An azimuth, or an angle east of Greenwich, in degrees.
+    pub const TURN: Self = Self::closed(-360.0, 360.0, "an angle from -360 to 360 degrees");
+    /// Haze of a clear sky.
+    pub const TURBIDITY: Self = Self::closed(1.0, 10.0, "a turbidity from 1 to 10");
     /// Frames in which a turntable goes round once; below 0 it goes the other way.
     pub const FRAMES_PER_TURN: Self = Self::closed(-1e6, 1e6, "a number of frames from -1000000 to 1000000");
     /// An angle in degrees from frame to frame.

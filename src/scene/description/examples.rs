@@ -10,7 +10,7 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 11] = [
+pub const EXAMPLES: [Example; 14] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
@@ -22,6 +22,9 @@ pub const EXAMPLES: [Example; 11] = [
     Example { name: "turbid", text: TURBID },
     Example { name: "moving camera", text: MOVING_CAMERA },
     Example { name: "models", text: MODELS },
+    Example { name: "clear sky", text: CLEAR_SKY },
+    Example { name: "summer afternoon", text: SUMMER_AFTERNOON },
+    Example { name: "measured sun", text: MEASURED_SUN },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -365,4 +368,39 @@ species = [
     { name = "chalk", ior = 1.6, volume_fraction = 0.01, sizes = { kind = "power-law", exponent = 4, least_um = 0.1, greatest_um = 5 } },
     { ior = 1.0, volume_fraction = 1e-4, sizes = { kind = "table", radius_um = [10, 20, 50], number = [0, 3, 1] } },
 ]
+"#;
+
+const CLEAR_SKY: &str = r#"
+[sun]
+elevation = 35.5
+azimuth = -120
+north = [1, 0, 0]
+angular_diameter = 0.5
+
+[sky]
+radiance = { model = "hosek-wilkie", turbidity = 2.5, ground_albedo = 0.3 }
+
+[output]
+exposure = -6
+"#;
+
+const SUMMER_AFTERNOON: &str = r#"
+[sun]
+date = "2026-06-21"
+time = "14:30+02:00"
+latitude = 55.7
+longitude = 12.6
+
+[sky]
+radiance = { model = "hosek-wilkie" }
+"#;
+
+const MEASURED_SUN: &str = r#"
+[sun]
+date = "2024-02-29"
+time = "18:15:30"
+latitude = 40
+longitude = -105.25
+north = [0, 1, 1]
+irradiance = { table = "astm-g173", scale = 0.5 }
 "#;

@@ -8,6 +8,7 @@
 mod allowed;
 mod camera;
 mod coefficients;
+mod daylight;
 mod density;
 mod document;
 mod domain;
@@ -29,10 +30,12 @@ mod scene;
 mod sky;
 mod spectrum_value;
 mod sun;
+mod sun_place;
 mod surfaces;
 mod value;
 
 pub use camera::{CameraDescription, CameraKey, FieldOfView, Placement, TurntableDescription};
+pub use daylight::Daylight;
 pub use error::{Place, SceneError};
 pub use examples::{EXAMPLES, Example};
 pub use framed::default_scene;
@@ -45,6 +48,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
 
+use crate::light::ClearAir;
 use crate::mesh::Region;
 use crate::optics::RefractiveIndex;
 use crate::optics::phase::PhaseFunction;
@@ -301,6 +305,8 @@ pub enum MaterialDescription {
 pub struct SunDescription {
     /// Unit vector towards the sun.
     pub direction: Vec3,
+    /// Horizontal unit vector that azimuths count from, clockwise seen from above.
+    pub north: Vec3,
     /// Diameter of the disc in degrees (0.53).
     pub angular_diameter: f32,
     /// Irradiance on a plane perpendicular to the direction.
@@ -317,6 +323,8 @@ pub enum SkyDescription {
         /// The file, relative to the scene file.
         image: String,
     },
+    /// A clear sky by day, whose light comes from the scene's sun: `{ model = "hosek-wilkie" }`.
+    Clear(ClearAir),
 }
 
 /// `[render]`
@@ -445,7 +453,7 @@ pub struct OutputDescription {
     pub path: Option<String>,
     /// Also write a PNG beside each EXR (true).
     pub png: bool,
-    /// Exposure of the PNG in stops (0).
+    /// Exposure of the PNG in stops (0; under a clear sky that of [`Daylight::exposure`]).
     pub exposure: f32,
     /// Also write each picture without its noise (false).
     pub denoise: bool,

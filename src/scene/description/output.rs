@@ -21,10 +21,9 @@ const AOVS: [(&str, Aov); 7] = [
     ("samples", Aov::Samples),
 ];
 
-/// Reads `[output]`.
-pub(super) fn read(value: &Value<'_>) -> Result<OutputDescription, SceneError> {
+/// Reads `[output]`; what it does not say is as in `default`.
+pub(super) fn read(value: &Value<'_>, default: OutputDescription) -> Result<OutputDescription, SceneError> {
     let table = value.table("a table [output]")?;
-    let default = OutputDescription::default();
     let path = table.get("path").map(|v| v.text("a pattern such as \"out/frame_####.exr\"")).transpose()?;
     let output = OutputDescription {
         path: path.map(str::to_owned),

@@ -8,7 +8,7 @@ use toml::de::DeTable;
 
 use super::document::{Source, Table};
 use super::error::SceneError;
-use super::{SceneDescription, SkyDescription};
+use super::{Axis, Daylight, OutputDescription, SceneDescription, SkyDescription, SunDescription};
 use super::{camera, domain, frames, media, meshes, output, regions, render, sky, sun, surfaces};
 
 /// Longest scene file that is read: measured tables of spectra fit in many times, meshes given by mistake do
@@ -72,7 +72,10 @@ fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneEr
     }
     let around = meshes::Around { frames: frames.as_ref(), regions: &regions, media: &media };
     let meshes = meshes.map_or_else(|| Ok(Vec::new()), |tables| meshes::read(&tables, &around))?;
-    let up = frames.as_ref().map_or(super::Axis::Z, |frames| frames.up);
+    let up = frames.as_ref().map_or(Axis::Z, |frames| frames.up);
+    let sky = sky.map_or_else(|| Ok(SkyDescription::default()), |table| sky::read(&table, sun.is_some()))?;
+    let sun = sun.map(|table| sun::read(&table, up, &sky)).transpose()?;
+    let by_default = by_default(&sky, sun.as_ref(), up);
     Ok(SceneDescription {
         file: source.file.to_owned(),
         directory: directory(source.file).to_owned(),
@@ -80,14 +83,26 @@ fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneEr
         regions,
         domain: domain.map(|table| domain::read(&table)).transpose()?,
         surfaces: surfaces.map_or_else(|| Ok(Vec::new()), |table| surfaces::read(&table, &media))?,
-        sun: sun.map(|table| sun::read(&table)).transpose()?,
-        sky: sky.map_or_else(|| Ok(SkyDescription::default()), |table| sky::read(&table))?,
+        sun,
+        sky,
         camera: camera::read(camera.as_ref(), up)?,
         render: render.map_or_else(|| Ok(Default::default()), |table| render::read(&table))?,
-        output: output.map_or_else(|| Ok(Default::default()), |table| output::read(&table))?,
+        output: match output {
+            Some(table) => output::read(&table, by_default)?,
+            None => by_default,
+        },
         frames,
         media,
     })
+}
+
+/// `[output]` where it says nothing: pictures under a clear sky, whose radiances are absolute, are exposed for it.
+fn by_default(sky: &SkyDescription, sun: Option<&SunDescription>, up: Axis) -> OutputDescription {
+    let exposure = match sky {
+        SkyDescription::Clear(_) => Daylight::new(sun, sky, up).exposure(),
+        _ => 0.0,
+    };
+    OutputDescription { exposure, ..OutputDescription::default() }
 }
 
 /// The folder of a file; that of a bare name is the current one.

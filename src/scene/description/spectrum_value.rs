@@ -1,13 +1,14 @@
-//! Reads a quantity over wavelength: a number, RGB, a table, and for lights a black body.
+//! Reads a quantity over wavelength: a number, RGB, a table, and for lights a black body or the sun's measured spectrum.
 
 use super::allowed::Allowed;
 use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
-use crate::spectrum::Spectrum;
+use crate::spectrum::{Spectrum, solar};
 
 const FORMS: &str = "a number, [r, g, b], or { wavelength = [..], value = [..] }";
 const LIGHT_FORMS: &str = "a number, [r, g, b], { wavelength = [..], value = [..] }, or { blackbody = .. }";
+const SUN_FORMS: &str = "{ table = \"astm-g173\", scale = 1.0 }";
 
 /// Maximum luminous efficacy in lm/W: luminance and illuminance in units of what the spectrum is in.
 const LUMENS_PER_WATT: f32 = 683.0;
@@ -33,8 +34,11 @@ pub(super) fn radiance(value: &Value<'_>) -> Result<Spectrum, SceneError> {
     Ok(Spectrum::Planck { temperature })
 }
 
-/// The irradiance of a light: as [`spectrum`], or `{ blackbody = K, illuminance = lux }`.
+/// The irradiance of a light: as [`spectrum`], `{ blackbody = K, illuminance = lux }` or `{ table = "astm-g173" }`.
 pub(super) fn irradiance(value: &Value<'_>) -> Result<Spectrum, SceneError> {
+    if value.has_key("table") {
+        return table_of_the_sun(value);
+    }
     if !value.has_key("blackbody") && !value.has_key("illuminance") {
         return read(value, &Allowed::NOT_NEGATIVE, LIGHT_FORMS);
     }
@@ -47,6 +51,15 @@ pub(super) fn irradiance(value: &Value<'_>) -> Result<Spectrum, SceneError> {
     };
     table.finish()?;
     Ok(spectrum)
+}
+
+/// `{ table = "astm-g173", scale = 1 }`
+fn table_of_the_sun(value: &Value<'_>) -> Result<Spectrum, SceneError> {
+    let table = value.table(SUN_FORMS)?;
+    table.require("table", "write \"astm-g173\"")?.choice(&[("astm-g173", ())])?;
+    let scale = table.get("scale").map_or(Ok(1.0), |v| v.number32(&Allowed::NOT_NEGATIVE))?;
+    table.finish()?;
+    Ok(solar::direct(f64::from(scale)))
 }
 
 /// A share as [`spectrum`], and what it leaves of 1: taken before both are rounded, so that it has its digits where it

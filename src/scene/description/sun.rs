@@ -1,27 +1,48 @@
 //! Reads `[sun]`.
 
-use super::SunDescription;
 use super::allowed::Allowed;
 use super::error::SceneError;
 use super::spectrum_value;
+use super::sun_place;
 use super::value::Value;
+use super::{Axis, SkyDescription, SunDescription};
+use crate::light::atmosphere::direct_sunlight;
 
 /// Mean diameter of the sun's disc in degrees.
 const DIAMETER: f32 = 0.53;
 
-/// Reads `[sun]`.
-pub(super) fn read(value: &Value<'_>) -> Result<SunDescription, SceneError> {
+/// Reads `[sun]`. Without an irradiance of its own it is what the air of a clear sky lets through.
+pub(super) fn read(value: &Value<'_>, up: Axis, sky: &SkyDescription) -> Result<SunDescription, SceneError> {
     let table = value.table("a table [sun]")?;
-    let direction =
-        table.require("direction", "write the direction towards the sun, such as [0.4, 0.2, 0.9]")?;
-    let irradiance = table.require("irradiance", "write for example [1.0, 0.95, 0.85]")?;
-    let sun = SunDescription {
-        direction: direction.direction()?,
-        angular_diameter: table
-            .get("angular_diameter")
-            .map_or(Ok(DIAMETER), |v| v.number32(&Allowed::HALF_TURN))?,
-        irradiance: spectrum_value::irradiance(&irradiance)?,
+    let (direction, north) = sun_place::read(&table, up)?;
+    let clear = match sky {
+        SkyDescription::Clear(air) => Some((air, height(value, direction.dot(up.vector()))?)),
+        _ => None,
     };
+    let irradiance = match (table.get("irradiance"), clear) {
+        (Some(irradiance), _) => spectrum_value::irradiance(&irradiance)?,
+        (None, Some((air, elevation))) => direct_sunlight(air.turbidity, elevation),
+        (None, None) => {
+            let cure = "write for example [1.0, 0.95, 0.85], { table = \"astm-g173\" }, or the model of a clear sky in [sky]";
+            spectrum_value::irradiance(&table.require("irradiance", cure)?)?
+        }
+    };
+    let angular_diameter =
+        table.get("angular_diameter").map_or(Ok(DIAMETER), |v| v.number32(&Allowed::HALF_TURN))?;
     table.finish()?;
-    Ok(sun)
+    Ok(SunDescription { direction, north, angular_diameter, irradiance })
+}
+
+/// Degrees above the horizon, for a clear sky.
+fn height(value: &Value<'_>, sine: f32) -> Result<f64, SceneError> {
+    // A direction in the horizon is rounded to single precision.
+    let degrees = libm::asin(f64::from(sine.clamp(-1.0, 1.0))).to_degrees();
+    if degrees < -1e-4 {
+        return Err(value.invalid(format!(
+            "the sun is {:.2} degrees below the horizon, and the sky's model is of the day: let it stand above, or give the \
+             sky another `radiance`",
+            -degrees
+        )));
+    }
+    Ok(degrees.max(0.0))
 }
