@@ -10,6 +10,7 @@ mod common;
 
 mod analytic {
     mod boundaries;
+    mod dispersion;
     mod environment;
     mod estimates;
     mod fog;
@@ -20,6 +21,7 @@ mod analytic {
     mod led_walks;
     mod limits;
     mod media;
+    mod rainbow;
     mod reflected;
     mod reflected_measured;
     mod reflected_where;

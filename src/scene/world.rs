@@ -160,8 +160,8 @@ impl World {
 
     /// The boundary between two media.
     pub(super) fn pair_of(&self, front: MediumId, back: MediumId) -> MediumPair {
-        let index = |id: MediumId| self.media[id.0 as usize].n;
-        MediumPair { front, back, matched: index(front) == index(back) }
+        let medium = |id: MediumId| &self.media[id.0 as usize];
+        MediumPair { front, back, matched: medium(front).is_matched_with(medium(back)) }
     }
 
     /// The `[[meshes]]` that are the same in every frame, or the others, with their places in the scene file.
@@ -208,7 +208,9 @@ fn lane_mode(description: &SceneDescription) -> LaneMode {
     if description.render.integrator == IntegratorKind::AmbientOcclusion {
         return LaneMode::Rgb;
     }
-    let spectral = description.media.values().any(medium_is_spectral)
+    let bends = description.render.dispersion && description.media.values().any(|m| m.ior.disperses());
+    let spectral = bends
+        || description.media.values().any(medium_is_spectral)
         || description.surfaces.iter().any(|s| material_is_spectral(&s.material))
         || description.sun.as_ref().is_some_and(|sun| sun.irradiance.is_spectral())
         || matches!(&description.sky, SkyDescription::Constant(sky) if sky.is_spectral())
@@ -237,16 +239,24 @@ fn media_of(description: &SceneDescription, mode: LaneMode) -> (Vec<Medium>, BTr
     let outside = description.regions.get(&Region::OUTSIDE);
     let mut order: Vec<&String> = description.media.keys().collect();
     order.sort_by_key(|name| (Some(*name) != outside, *name));
-    let media = order.iter().map(|name| medium_of(name, &description.media[*name], mode)).collect();
+    let disperses = description.render.dispersion && mode == LaneMode::Spectral;
+    let media =
+        order.iter().map(|name| medium_of(name, &description.media[*name], mode, disperses)).collect();
     let names = order.into_iter().cloned().zip((0..).map(MediumId)).collect();
     (media, names)
 }
 
-fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode) -> Medium {
+fn medium_of(name: &str, medium: &MediumDescription, mode: LaneMode, disperses: bool) -> Medium {
     let [sigma_a, sigma_s] = coefficients_of(medium, mode);
+    let n = medium.ior.for_rays();
+    let index = match disperses && medium.ior.disperses() {
+        true => LaneCurve::sampled(|lambda| medium.ior.n(lambda)),
+        false => LaneCurve::Constant(n),
+    };
     Medium {
         name: name.into(),
-        n: medium.ior.for_rays(),
+        n,
+        index,
         sigma_a,
         sigma_s,
         emission: medium.emission.prepare(Role::Illuminant, mode),

@@ -69,6 +69,17 @@ impl Wavelengths {
     }
 }
 
+/// The number u of which four wavelengths are sampled: `v` says which four, `hero` which of them is lane 0.
+///
+/// ```text
+/// u = (floor(4 hero) + v) / 4
+/// ```
+/// u and u + 1/4 give the same four. So n stratified numbers u are n / 4 strata of v with four unstratified ones in
+/// each; as v itself they are n. Only dispersion asks which of the four is the hero: else 0 does.
+pub fn of_four(v: f32, hero: f32) -> f32 {
+    (0.25 * ((4.0 * hero).floor() + v)).min(1.0 - f32::EPSILON * 0.5)
+}
+
 /// The colour that a path adds to the film: its lanes themselves when they are RGB, else [`Wavelengths::to_rgb`].
 pub fn film_rgb(mode: LaneMode, wavelengths: &Wavelengths, lanes: Lanes) -> Vec3 {
     match mode {
