@@ -369,12 +369,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nconfidence = 95", 2, 14, "render.confidence: 95: write a confidence from 0.5 to 0.9999"),
     ("[render]\nseed = -1", 2, 8, "render.seed: -1: write a whole number from 0 to 18446744073709551615"),
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
-    (
-        "[render]\nsimilarity = 5",
-        2,
-        14,
-        "render.similarity: 5: write a whole number from 0 to 4",
-    ),
+    ("[render]\nsimilarity = 5", 2, 14, "render.similarity: 5: write a whole number from 0 to 4"),
     (
         "[render]\nsimilarity = \"high\"",
         2,

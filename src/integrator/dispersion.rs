@@ -23,6 +23,8 @@
 //! So every lane keeps its expectation among photons, whatever eye paths do: what an eye path of lane 0 alone takes of
 //! them is the fourth part of them that have lane 0, and nothing is counted sixteen-fold.
 
+use glam::Vec3;
+
 use super::interface::{Ways, ways};
 use super::path::{Branch, Sample};
 use crate::optics::medium::{MediumId, pick};
@@ -71,18 +73,18 @@ pub(super) fn seen_through(carried: Carried, eta: Lanes) -> Lanes {
 }
 
 impl Parting {
-    /// Where lanes part; `ways` are those of lane 0.
+    /// Where lanes part; `hero` are the ways of lane 0.
     #[inline]
-    pub(super) fn at(branch: &Branch, hit: &SurfaceHit, eta: Lanes, ways: &Ways) -> Option<Self> {
-        is_parted_by(branch.carried, eta).then(|| Self::of_ways(branch, hit, eta, ways))
+    pub(super) fn at(branch: &Branch, hit: &SurfaceHit, eta: Lanes, hero: &Ways) -> Option<Self> {
+        is_parted_by(branch.carried, eta).then(|| Self::of_ways(-branch.direction, hit.ns, hit.ng, eta, hero))
     }
 
     #[inline(never)]
-    fn of_ways(branch: &Branch, hit: &SurfaceHit, eta: Lanes, hero: &Ways) -> Self {
+    fn of_ways(wo: Vec3, ns: Vec3, ng: Vec3, eta: Lanes, hero: &Ways) -> Self {
         let mut each = Lanes::splat(hero.reflectance);
         let mut reflects_apart = false;
         for lane in 1..4 {
-            let own = ways(-branch.direction, hit.ns, hit.ng, eta[lane]);
+            let own = ways(wo, ns, ng, eta[lane]);
             each[lane] = own.reflectance;
             reflects_apart |= own.shaded != hero.shaded;
         }
@@ -138,5 +140,86 @@ impl Branch {
         self.throughput = Lanes::ZERO;
         self.throughput[lane] = sum;
         self.carried = Carried::One(lane as u8);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{SampleSeed, SampleStream};
+
+    fn stream(i: u32) -> SampleStream {
+        SampleStream::new(SampleSeed::new(3), i, 0, 0)
+    }
+
+    /// Each of four wavelengths leads once: in the mean every one of them is reflected and refracted as it would be alone,
+    /// up to the rounding of sums and quotients, and no weight is above the bounds of the head. Where 1 - q is below 1e-3
+    /// rounding has a share of it, and of what is refracted there.
+    #[test]
+    fn parting_keeps_every_wavelength_and_is_bounded() {
+        let (mut apart, mut total) = (0, 0);
+        for i in 0..40_000 {
+            let ([x, y, z, spread], [tilt, turn, which, _]) = {
+                let mut stream = stream(i);
+                (stream.next4(), stream.next4())
+            };
+            let wo = Vec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, z * z + 1e-3).normalize();
+            let ns = Vec3::new(tilt - 0.5, turn - 0.5, 0.7).normalize();
+            let ns = if which < 0.5 { ns } else { Vec3::Z };
+            let base = [1.33, 0.75, 1.0, 0.99][i as usize % 4];
+            let etas = [0.0, 0.3, 0.5, 1.0].map(|at| base * (1.0 + 0.05 * spread * (at - 0.5)));
+            let alone = etas.map(|eta| ways(wo, ns, Vec3::Z, eta));
+            let (mut reflected, mut refracted) = ([0.0_f32; 4], [0.0_f32; 4]);
+            let mut least_rest = 1.0_f32;
+            for lead in 0..4 {
+                let lane = |wavelength: usize| (wavelength + 4 - lead) % 4;
+                let eta = Lanes::from_array(std::array::from_fn(|k| etas[(k + lead) % 4]));
+                let parting = Parting::of_ways(wo, ns, Vec3::Z, eta, &alone[lead]);
+                let q = parting.reflectance;
+                assert!((0.0..=1.0 + 1e-6).contains(&q), "{q}");
+                assert!(parting.reflected.max_element() <= 4.0 + 1e-5, "{}", parting.reflected);
+                assert!(parting.refracted.max_element() <= 16.0 + 1e-4, "{}", parting.refracted);
+                apart += u32::from(parting.reflects_apart);
+                total += u32::from(alone[lead].refracted.is_none());
+                least_rest = least_rest.min(if q < 1.0 { 1.0 - q } else { 1.0 });
+                for wavelength in 0..4 {
+                    reflected[wavelength] += 0.25 * q * parting.reflected[lane(wavelength)];
+                    refracted[wavelength] += 0.25 * (1.0 - q) * parting.refracted[lane(wavelength)];
+                }
+            }
+            let allowed = 4e-7 * (1.0 + 1.0 / least_rest.max(1e-3));
+            for (wavelength, alone) in alone.iter().enumerate() {
+                let off = (reflected[wavelength] - alone.reflectance).abs();
+                assert!(off < allowed, "{i} {wavelength}: {reflected:?} {alone:?}");
+                let off = (refracted[wavelength] - (1.0 - alone.reflectance)).abs();
+                assert!(off < allowed, "{i} {wavelength}: {refracted:?} {alone:?}");
+            }
+        }
+        assert!(apart > 20 && total > 1000, "{apart} apart, {total} reflected totally");
+    }
+
+    /// 40,000 photons: five standard errors of the mean on each lane.
+    #[test]
+    fn photons_keep_the_mean_of_every_lane() {
+        let throughput = Lanes::new(0.4, 1.0, 0.0, 0.2);
+        let eta = Lanes::new(1.33, 1.34, 1.35, 1.36);
+        let (n, mut sum) = (40_000, Lanes::ZERO);
+        for i in 0..n {
+            let mut photon = Branch { throughput, ..Branch::new(Vec3::ZERO, Vec3::X, stream(i)) };
+            let drawn = photon.drawn(eta);
+            let Carried::One(lane) = photon.carried else { panic!("nothing parted") };
+            assert_eq!(drawn, eta[usize::from(lane)]);
+            // Roulette measures the photon as it was.
+            assert!(
+                (photon.throughput[usize::from(lane)] / photon.share - throughput[usize::from(lane)]).abs()
+                    < 1e-6
+            );
+            sum += photon.throughput / n as f32;
+        }
+        for lane in 0..4 {
+            let share = throughput[lane] / 1.6;
+            let error = 1.6 * (share * (1.0 - share) / n as f32).sqrt();
+            assert!((sum[lane] - throughput[lane]).abs() <= 5.0 * error, "{sum}");
+        }
     }
 }

@@ -200,6 +200,33 @@ mod tests {
         assert!((0.12..0.14).contains(&deviation), "{deviation}");
     }
 
+    /// A lane alone counts four times: one that ended adds nothing, and lane 0 has every wavelength in the end.
+    #[test]
+    fn the_hero_alone_averages_to_white() {
+        let mut sum = glam::DVec3::ZERO;
+        for (i, hero) in (0..4096).flat_map(|i| [0.1, 0.3, 0.6, 0.9].map(|hero| (i, hero))) {
+            let w = Wavelengths::sample(of_four((i as f32 + 0.5) / 4096.0, hero));
+            let alone = 4.0 * cie::d65(f64::from(w.lambda[0])) as f32;
+            sum += film_rgb(LaneMode::Spectral, &w, Lanes::new(alone, 0.0, 0.0, 0.0)).as_dvec3();
+        }
+        let white = sum / (4.0 * 4096.0);
+        assert!((white - glam::DVec3::ONE).abs().max_element() < 1e-5, "{white}");
+    }
+
+    #[test]
+    fn which_of_the_four_leads_does_not_change_the_four() {
+        for v in [0.0, 0.3, 0.999] {
+            let sets = [0.0, 0.25, 0.5, 0.75].map(|hero| Wavelengths::sample(of_four(v, hero)).lambda);
+            for (lead, set) in sets.iter().enumerate() {
+                for (lane, lambda) in set.iter().enumerate() {
+                    let same = sets[0][(lane + lead) % 4];
+                    // The number is rounded to 2^-24 of 400 nm at the most, where the table is steepest 20 times that.
+                    assert!((lambda - same).abs() < 1e-3, "{v}: {sets:?}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn rgb_lanes_reach_the_film_as_they_are() {
         let lanes = Lanes::new(0.1, 2.0, 3.0, 0.0);

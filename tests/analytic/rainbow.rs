@@ -11,7 +11,7 @@ use floe::spectrum::cie;
 use glam::DVec3;
 
 use crate::common::mesh::{TestMesh, parallelogram, sphere};
-use crate::common::render::Rendered;
+use crate::common::render::{Prepared, Rendered};
 use crate::common::scene::SceneFolder;
 
 const WATER: RefractiveIndex = RefractiveIndex::Water { temperature: 20.0, salinity: 0.0 };
@@ -41,7 +41,12 @@ fn of_white(value: impl Fn(f64) -> f64) -> DVec3 {
 
 /// Standard scores of numbers from a picture against expected ones, each allowed an own deviation beside the noise: the
 /// greatest must stay below 5, which 100 normal numbers exceed with a chance of 6e-5.
-fn assert_scores(name: &str, found: &[(DVec3, DVec3)], expected: &[DVec3], deviation: impl Fn(usize) -> DVec3) {
+fn assert_scores(
+    name: &str,
+    found: &[(DVec3, DVec3)],
+    expected: &[DVec3],
+    deviation: impl Fn(usize) -> DVec3,
+) {
     let (mut worst, mut squares) = (0.0_f64, 0.0);
     for (i, ((mean, se), expected)) in found.iter().zip(expected).enumerate() {
         let allowed = deviation(i);
@@ -152,11 +157,7 @@ fn a_prism_deviates_each_wavelength_by_its_index() {
     let eye = face - 10.0 * axis;
     // Where the middle of the spectrum falls.
     let height = 0.5 - (wall - 0.5 / 3.0_f64.sqrt()) * rise.tan();
-    let screen = parallelogram(
-        DVec3::new(wall, -20.0, -30.0),
-        DVec3::Y * 40.0,
-        DVec3::Z * (30.0 + height),
-    );
+    let screen = parallelogram(DVec3::new(wall, -20.0, -30.0), DVec3::Y * 40.0, DVec3::Z * (30.0 + height));
     let (at, target) = (eye.to_array(), face.to_array());
     let scene = SceneFolder::new().mesh("prism.ply", &prism()).mesh("screen.ply", &screen.turned()).scene(&format!(
         "[media.glass]\nior = {{ wavelength = [380, 780], n = [1.55, 1.45] }}\n\
@@ -197,6 +198,19 @@ fn ring(row: usize) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).unwrap_or_else(|e| panic!("no picture: {e}"));
     bytes.into_inner()
+}
+
+/// The drop, seen from above, under a ring.
+fn sky_ring(drop: &[u8], row: usize) -> Prepared {
+    let fov = 2.0 * (HALF / DISTANCE).atan().to_degrees();
+    let folder = SceneFolder::new().file("drop.ply", drop).file("sky.exr", &ring(row));
+    folder.scene(&format!(
+        "[media.water]\n{WATER_TEXT}\
+         [[surfaces]]\nmesh = \"drop.ply\"\nfront = \"air\"\nback = \"water\"\nmaterial = {{ kind = \"dielectric\" }}\n\
+         [sky]\nradiance = {{ image = \"sky.exr\" }}\n\
+         [camera]\neye = [0, 0, {DISTANCE}]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nvertical_fov = {fov}\nresolution = [24, 24]\n\
+         [render]\nmax_depth = {DEPTH}\nsplit = 4\ndispersion = true\n"
+    ))
 }
 
 /// What the drop sends to the eye of light from a ring at `angle` from the eye's zenith, over all of the picture: sum over
@@ -252,22 +266,21 @@ fn the_rainbow_stands_at_42_and_51_degrees() {
     {
         assert!((bow(n, reflections) - degrees).abs() < 0.01, "{n} {reflections}: {}", bow(n, reflections));
     }
-    println!("n {red:.4} to {violet:.4}: bows {:.2} to {:.2}, {:.2} to {:.2}", bow(red, 1), bow(violet, 1), bow(red, 2), bow(violet, 2));
-    let angles = [40.625, 41.125, 41.625, 42.125, 42.375, 44.125, 47.125, 50.125, 50.625, 51.625, 52.625, 53.125];
+    println!(
+        "n {red:.4} to {violet:.4}: bows {:.2} to {:.2}, {:.2} to {:.2}",
+        bow(red, 1),
+        bow(violet, 1),
+        bow(red, 2),
+        bow(violet, 2)
+    );
+    let angles =
+        [40.625, 41.125, 41.625, 42.125, 42.375, 44.125, 47.125, 50.125, 50.625, 51.625, 52.625, 53.125];
     let drop_mesh = sphere(DVec3::ZERO, 1.0, 7).ply().into_bytes();
-    let fov = 2.0 * (HALF / DISTANCE).atan().to_degrees();
     let expected_at = |angle: f64| of_white(|lambda| drop(angle.to_radians(), WATER.n(lambda), 4000));
     let (mut found, mut expected, mut slopes) = (Vec::new(), Vec::new(), Vec::new());
     for degrees in angles {
         let row = (degrees * 4.0) as usize;
-        let folder = SceneFolder::new().file("drop.ply", &drop_mesh).file("sky.exr", &ring(row));
-        let scene = folder.scene(&format!(
-            "[media.water]\n{WATER_TEXT}\
-             [[surfaces]]\nmesh = \"drop.ply\"\nfront = \"air\"\nback = \"water\"\nmaterial = {{ kind = \"dielectric\" }}\n\
-             [sky]\nradiance = {{ image = \"sky.exr\" }}\n\
-             [camera]\neye = [0, 0, {DISTANCE}]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nvertical_fov = {fov}\nresolution = [24, 24]\n\
-             [render]\nmax_depth = {DEPTH}\nsplit = 4\ndispersion = true\n"
-        ));
+        let scene = sky_ring(&drop_mesh, row);
         found.push(scene.render(64, row as u64).mean());
         expected.push(expected_at(degrees));
         slopes.push((expected_at(degrees + 0.25) - expected_at(degrees - 0.25)).abs() * 0.5);
@@ -279,4 +292,39 @@ fn the_rainbow_stands_at_42_and_51_degrees() {
     assert!(at(40.625).z > at(40.625).x && at(53.125).z > at(53.125).x);
     let dark = at(47.125).element_sum().max(at(44.125).element_sum());
     assert!(at(41.625).element_sum() > 5.0 * dark && at(51.625).element_sum() > 2.0 * dark);
+}
+
+/// Draws the sky over a lawn, the sun 12 degrees high behind the eye, as a wall of such drops sends it: each pixel as the ring
+/// of its angle from the point opposite to the sun, over the ring's solid angle.
+#[test]
+#[ignore = "writes rainbow.png into the folder that FLOE_PICTURES names"]
+fn the_rainbow_as_a_picture() {
+    const FIRST: usize = 144;
+    const RINGS: usize = 80;
+    let Some(folder) = std::env::var_os("FLOE_PICTURES") else { return };
+    let drop_mesh = sphere(DVec3::ZERO, 1.0, 7).ply().into_bytes();
+    let rings: Vec<DVec3> = (FIRST..FIRST + RINGS)
+        .map(|row| {
+            sky_ring(&drop_mesh, row).render(64, row as u64).mean().0 / ((row as f64 + 0.5) * RING).sin()
+        })
+        .collect();
+    let at = |degrees: f64| {
+        let place = (4.0 * degrees - 0.5 - FIRST as f64).clamp(0.0, RINGS as f64 - 1.001);
+        rings[place as usize].lerp(rings[place as usize + 1], place.fract())
+    };
+    let brightest = rings.iter().map(|c| c.max_element()).fold(0.0, f64::max);
+    let opposite = DVec3::new(1.0, 0.0, -(12.0_f64.to_radians().tan())).normalize();
+    let picture = image::RgbImage::from_fn(640, 280, |x, y| {
+        // A cylinder: 120 degrees wide, from the horizon up.
+        let (phi, theta) = ((f64::from(x) - 319.5) * 0.1875, (270.0 - f64::from(y)) * 0.1875);
+        let (phi, theta) = (phi.to_radians(), theta.to_radians());
+        let direction = DVec3::new(theta.cos() * phi.cos(), theta.cos() * phi.sin(), theta.sin());
+        let bow = at(direction.angle_between(opposite).to_degrees()) * (0.55 / brightest);
+        let sky = DVec3::new(0.10, 0.125, 0.16);
+        let colour = if theta < 0.0 { DVec3::new(0.03, 0.05, 0.02) } else { sky + bow };
+        let code = |v: f64| if v < 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+        image::Rgb(colour.to_array().map(|v| (255.0 * code(v.clamp(0.0, 1.0))).round() as u8))
+    });
+    let file = std::path::Path::new(&folder).join("rainbow.png");
+    picture.save(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
 }
