@@ -299,8 +299,8 @@ fn the_rainbow_stands_at_42_and_51_degrees() {
 #[test]
 #[ignore = "writes rainbow.png into the folder that FLOE_PICTURES names"]
 fn the_rainbow_as_a_picture() {
-    const FIRST: usize = 144;
-    const RINGS: usize = 80;
+    const FIRST: usize = 80;
+    const RINGS: usize = 144;
     let Some(folder) = std::env::var_os("FLOE_PICTURES") else { return };
     let drop_mesh = sphere(DVec3::ZERO, 1.0, 7).ply().into_bytes();
     let rings: Vec<DVec3> = (FIRST..FIRST + RINGS)
@@ -312,6 +312,9 @@ fn the_rainbow_as_a_picture() {
         let place = (4.0 * degrees - 0.5 - FIRST as f64).clamp(0.0, RINGS as f64 - 1.001);
         rings[place as usize].lerp(rings[place as usize + 1], place.fract())
     };
+    // Within the bow, where nothing stands out, noise is smoothed over 4 degrees.
+    let even = |degrees: f64| (-16..=16).map(|k| at(degrees + 0.125 * f64::from(k))).sum::<DVec3>() / 33.0;
+    let seen = |degrees: f64| at(degrees).lerp(even(degrees), ((38.5 - degrees) * 0.5).clamp(0.0, 1.0));
     let brightest = rings.iter().map(|c| c.max_element()).fold(0.0, f64::max);
     let opposite = DVec3::new(1.0, 0.0, -(12.0_f64.to_radians().tan())).normalize();
     let picture = image::RgbImage::from_fn(640, 280, |x, y| {
@@ -319,8 +322,8 @@ fn the_rainbow_as_a_picture() {
         let (phi, theta) = ((f64::from(x) - 319.5) * 0.1875, (270.0 - f64::from(y)) * 0.1875);
         let (phi, theta) = (phi.to_radians(), theta.to_radians());
         let direction = DVec3::new(theta.cos() * phi.cos(), theta.cos() * phi.sin(), theta.sin());
-        let bow = at(direction.angle_between(opposite).to_degrees()) * (0.55 / brightest);
-        let sky = DVec3::new(0.10, 0.125, 0.16);
+        let bow = seen(direction.angle_between(opposite).to_degrees()) * (0.6 / brightest);
+        let sky = DVec3::new(0.07, 0.09, 0.12);
         let colour = if theta < 0.0 { DVec3::new(0.03, 0.05, 0.02) } else { sky + bow };
         let code = |v: f64| if v < 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
         image::Rgb(colour.to_array().map(|v| (255.0 * code(v.clamp(0.0, 1.0))).round() as u8))
