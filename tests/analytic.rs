@@ -11,6 +11,7 @@ mod common;
 mod analytic {
     mod boundaries;
     mod clear_sky;
+    mod dispersion;
     mod environment;
     mod estimates;
     mod fog;
@@ -21,6 +22,7 @@ mod analytic {
     mod led_walks;
     mod limits;
     mod media;
+    mod rainbow;
     mod reflected;
     mod reflected_measured;
     mod reflected_where;

@@ -54,7 +54,7 @@ fn an_empty_file_has_every_default() {
     let render = scene.render;
     assert_eq!((render.integrator, render.filter), (IntegratorKind::Auto, FilterKind::Box));
     assert_eq!((render.samples, render.max_depth, render.split, render.seed), (64, 0, 1, 0));
-    assert_eq!((render.similarity, render.seed_mode), (0, None));
+    assert_eq!((render.similarity, render.dispersion, render.seed_mode), (0, false, None));
     assert_eq!(
         scene.output,
         OutputDescription { path: None, png: true, exposure: 0.0, denoise: false, aovs: vec![] }
@@ -76,6 +76,7 @@ fn a_whole_scene_is_read_as_written() {
     assert_eq!((&sea.ior, &sea.absorption), (&RefractiveIndex::Constant(1.33), &Some(absorption)));
     assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
     assert_eq!((scene.render.similarity, scene.render.seed_mode), (2, Some(SeedMode::Sequence)));
+    assert!(scene.render.dispersion);
     let sun = scene.sun.unwrap();
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
@@ -360,12 +361,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nconfidence = 95", 2, 14, "render.confidence: 95: write a confidence from 0.5 to 0.9999"),
     ("[render]\nseed = -1", 2, 8, "render.seed: -1: write a whole number from 0 to 18446744073709551615"),
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
-    (
-        "[render]\nsimilarity = 5",
-        2,
-        14,
-        "render.similarity: 5: write a whole number from 0 to 4",
-    ),
+    ("[render]\nsimilarity = 5", 2, 14, "render.similarity: 5: write a whole number from 0 to 4"),
     (
         "[render]\nsimilarity = \"high\"",
         2,
@@ -373,6 +369,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
         "render.similarity: \"high\": write a whole number from 0 to 4",
     ),
     ("[render]\nsimilarity = 1.5", 2, 14, "render.similarity: 1.5: write a whole number from 0 to 4"),
+    ("[render]\ndispersion = 1", 2, 14, "render.dispersion: 1: write true or false"),
     ("[render]\nsplit = 17", 2, 9, "render.split: 17: write a whole number from 0 to 16"),
     ("[render]\nforced_scattering = 17", 2, 21, "render.forced_scattering: 17: write a whole number from 0 to 16"),
     ("[render]\nphotons = { count = 10000001 }", 2, 21, "render.photons.count: 10000001: write a whole number from 0 to 10000000"),

@@ -12,6 +12,7 @@ use crate::driver::{Job, RenderError};
 use crate::integrator::Integrator;
 use crate::mesh::Region;
 use crate::optics::density::Density;
+use crate::optics::medium::Medium;
 use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::camera_path::StartPlaces;
 use crate::scene::description::{
@@ -161,9 +162,9 @@ fn describe_media(world: &World) -> String {
             if labels.is_empty() { String::new() } else { format!(" (label {})", labels.join(", ")) };
         let _ = writeln!(
             text,
-            "  {}{labels}: index {:.4}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {:.3}",
+            "  {}{labels}: index {}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {:.3}",
             medium.name,
-            medium.n,
+            describe_index(medium),
             medium.sigma_a.maximum(),
             medium.sigma_s.maximum(),
             medium.phase.mean_cosine()
@@ -201,6 +202,13 @@ fn describe_model(model: &Model) -> String {
     }
     let _ = writeln!(text, "    error of the integrals over radius {:.0e}", bulk.relative_error);
     text
+}
+
+fn describe_index(medium: &Medium) -> String {
+    match medium.disperses() {
+        true => format!("{:.4} to {:.4}", medium.index.minimum(), medium.index.maximum()),
+        false => format!("{:.4}", medium.n),
+    }
 }
 
 fn describe_density(described: &DensityDescription, density: &Density) -> Option<String> {

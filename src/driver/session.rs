@@ -372,6 +372,7 @@ impl<'a> Session<'a> {
             ("similarity", s.similarity.to_string()),
         ]
         .into_iter()
+        .chain(s.dispersion.then(|| ("dispersion", s.dispersion.to_string())))
         .chain((s.forced_scattering > 0).then(|| ("forcedScattering", s.forced_scattering.to_string())))
         .chain(
             s.target_error.into_iter().flat_map(|error| {

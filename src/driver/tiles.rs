@@ -132,8 +132,7 @@ impl Work<'_> {
         let mut stream = SampleStream::new(sampling.seed, x, y, index);
         let [u, v, w, t] = stream.next4();
         let offset = sampling.filter.sample([u, v]);
-        let wavelengths =
-            photons.map_or_else(|| Wavelengths::for_mode(frame.mode, w), |pass| pass.wavelengths);
+        let wavelengths = photons.map_or_else(|| frame.wavelengths(w, &mut stream), |pass| pass.wavelengths);
         let time = photons.map_or_else(|| frame.views.time(t), |pass| pass.time);
         let camera = frame.views.at(time);
         let (x, y) = (x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y);

@@ -238,6 +238,7 @@ mod tests {
         let medium = Medium {
             name: "milk".into(),
             n: 1.3,
+            index: LaneCurve::Constant(1.3),
             sigma_a: LaneCurve::Rgb(Lanes::new(0.1, 0.02, 0.002, 0.0) + absorbed),
             sigma_s: LaneCurve::Constant(120.0),
             emission: LaneCurve::Constant(0.0),

@@ -7,6 +7,7 @@
 use glam::Vec3;
 
 use super::direct::Receiver;
+use super::dispersion::seen_through;
 use super::interface;
 use super::layers::Seen;
 use super::path::{Branch, LitVertex, Looked, Sample};
@@ -67,10 +68,11 @@ impl<'a> Sample<'a> {
             return Lanes::ZERO;
         }
         let point = frame.geometry.surface_hit(&hit, ray.direction, self.time);
-        let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
-        let ways = interface::ways(-ray.direction, point.ns, point.ng, eta_t_over_i);
+        let eta = self.eta(incident, beyond);
+        let ways = interface::ways(-ray.direction, point.ns, point.ng, eta.x);
         let Some(direction) = ways.refracted else { return Lanes::ZERO };
         let passed = (1.0 - ways.reflectance) * self.index_factor(incident, beyond);
+        let passed = passed * seen_through(receiver.carried, eta);
         let left = self.transmittance_of(incident, ray, 0.0, hit.t) * passed;
         let way = self.ray(point.point.position, direction);
         left * self.light_along(&way, hit.triangle, (beyond, insides))

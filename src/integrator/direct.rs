@@ -7,6 +7,7 @@
 
 use glam::Vec3;
 
+use super::dispersion::Carried;
 use super::path::Sample;
 use crate::accel::Ignored;
 use crate::geometry::Ray;
@@ -30,6 +31,8 @@ pub(super) struct Receiver {
     pub(super) leaves: u32,
     /// Interactions of the path before it.
     pub(super) interactions: u32,
+    /// The lanes of the path.
+    pub(super) carried: Carried,
 }
 
 impl Sample<'_> {

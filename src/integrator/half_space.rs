@@ -39,7 +39,7 @@ pub(super) struct Cover {
     /// Inner over outer index as far as they bend light: 1 where it passes straight through.
     pub(super) eta: f32,
     /// What radiance is multiplied by on its way in besides the 1 / eta^2 that it is compressed by.
-    pub(super) gain: f32,
+    pub(super) gain: Lanes,
 }
 
 impl Cover {
@@ -64,7 +64,7 @@ impl Cover {
         }
         let passed = (1.0 - way.reflectance) * cos / way.cos_t;
         let pdf_w = reflection.pdf_w(way.cos_t, throughput) * passed / (self.eta * self.eta);
-        (reflection.value(way.cos_t) * (passed * self.gain), pdf_w)
+        (reflection.value(way.cos_t) * (self.gain * passed), pdf_w)
     }
 
     /// The direction outside at a cosine and a fraction of a turn about the normal.
@@ -115,6 +115,7 @@ impl Sample<'_> {
                     insides: branch.insides,
                     leaves: hit.triangle,
                     interactions: branch.interactions,
+                    carried: branch.carried,
                 };
                 let response = |wi: Vec3| cover.response(&reflection, throughput, wi);
                 let direct = self.direct(&receiver, true, response, &mut branch.stream);

@@ -11,6 +11,7 @@ mod beneath;
 pub mod counters;
 mod diffuse;
 mod direct;
+mod dispersion;
 mod flight;
 mod forced;
 mod half_space;

@@ -9,6 +9,7 @@
 use glam::Vec3;
 
 use super::direct::Receiver;
+use super::dispersion::Carried;
 use super::flight::{Around, Event};
 use super::photon::{self, PhotonPass};
 use super::roulette::at_random;
@@ -67,6 +68,8 @@ pub struct Branch {
     /// The meshes that it is in, of those that overlap. It fills what alignment leaves over.
     pub(super) insides: Insides,
     pub(super) throughput: Lanes,
+    /// The lanes that are left.
+    pub(super) carried: Carried,
     /// The product of (n_a / n_b)^2 that is part of the throughput.
     pub(super) index_factor: f32,
     /// The branch's share of the path at its splits, which roulette measures the throughput by.
@@ -305,6 +308,7 @@ impl Sample<'_> {
                 insides: branch.insides,
                 leaves: u32::MAX,
                 interactions: branch.interactions,
+                carried: branch.carried,
             };
             let response = |wi: Vec3| {
                 let turned = Deflection::between(forward, wi);
@@ -403,6 +407,7 @@ impl Branch {
             medium: MediumId(0),
             insides: Insides::NONE,
             throughput: Lanes::ONE,
+            carried: Carried::All,
             index_factor: 1.0,
             share: 1.0,
             interactions: 0,

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::diffuse::DiffuseLobe;
 use super::direct::Receiver;
+use super::dispersion::Parting;
 use super::half_space::Cover;
 use super::interface;
 use super::path::{Arrival, Branch, Fate, LitVertex, Looked, Sample};
@@ -75,7 +76,7 @@ impl Sample<'_> {
             None => Fate::GoesOn,
             Some(half_space) => {
                 let media = (incident, beyond);
-                let cover = Cover { media, normal: hit.ns, ng: hit.ng, eta: 1.0, gain: 1.0 / index_factor };
+                let cover = Cover { media, normal: hit.ns, ng: hit.ng, eta: 1.0, gain: index_factor.recip() };
                 let mu = -branch.direction.dot(hit.ns);
                 self.remember_first(branch, hit, half_space.along(mu).reflectance);
                 self.turn_back(branch, hit, &cover, &half_space, mu)
@@ -88,8 +89,10 @@ impl Sample<'_> {
         let (incident, beyond) = pair.crossed(hit.from_front);
         self.check_label(branch, pair, hit);
         self.remember_first(branch, hit, Lanes::ONE);
-        let eta_t_over_i = self.frame.medium(beyond).n / self.frame.medium(incident).n;
-        let ways = interface::ways(-branch.direction, hit.ns, hit.ng, eta_t_over_i);
+        let eta = self.eta(incident, beyond);
+        let ways = interface::ways(-branch.direction, hit.ns, hit.ng, eta.x);
+        let parting = Parting::at(branch, hit, eta, &ways);
+        let reflectance = parting.as_ref().map_or(ways.reflectance, |parting| parting.reflectance);
         branch.medium = incident;
         let beyond_looked = match branch.arrival.looked {
             Looked::Beneath(weight) => Looked::Through(weight),
@@ -97,26 +100,35 @@ impl Sample<'_> {
         };
         branch.arrival.looked = Looked::Not;
         let splits = branch.splits_left > 0;
-        let reflects = !splits && u[1] < ways.reflectance;
+        let reflects = !splits && u[1] < reflectance;
         let refracted = ways.refracted.filter(|_| !reflects);
         let Some(direction) = refracted else {
             branch.go_on(hit, ways.reflected);
+            if let Some(parting) = &parting {
+                parting.reflect(branch);
+            }
             self.scratch.around.outward = -hit.ng;
             return branch.interacted(u[3]);
         };
         if splits {
             let mut reflected = *branch;
             reflected.go_on(hit, ways.reflected);
-            reflected.split_off(ways.reflectance, 0);
-            if reflected.interacted(u[3]) == Fate::GoesOn && ways.reflectance > 0.0 {
+            if let Some(parting) = &parting {
+                parting.reflect(&mut reflected);
+            }
+            reflected.split_off(reflectance, 0);
+            if reflected.interacted(u[3]) == Fate::GoesOn && reflectance > 0.0 {
                 self.scratch.branches.push(reflected);
             }
         }
         branch.go_on(hit, direction);
         branch.enter(beyond, self.index_factor(incident, beyond));
         branch.arrival.looked = beyond_looked;
+        if let Some(parting) = &parting {
+            parting.refract(branch);
+        }
         if splits {
-            branch.split_off(1.0 - ways.reflectance, 1);
+            branch.split_off(1.0 - reflectance, 1);
         }
         self.scratch.around.outward = hit.ng;
         let fate = branch.interacted(u[3]);
@@ -124,8 +136,8 @@ impl Sample<'_> {
             None => fate,
             Some(half_space) => {
                 let normal = if ways.shaded { hit.ns } else { hit.ng };
-                let (media, eta) = ((incident, beyond), eta_t_over_i);
-                let cover = Cover { media, normal, ng: hit.ng, eta, gain: 1.0 };
+                let (media, eta) = ((incident, beyond), eta.x);
+                let cover = Cover { media, normal, ng: hit.ng, eta, gain: Lanes::ONE };
                 self.turn_back(branch, hit, &cover, &half_space, -direction.dot(normal))
             }
         }
@@ -158,6 +170,7 @@ impl Sample<'_> {
                 insides: branch.insides,
                 leaves: hit.triangle,
                 interactions: branch.interactions,
+                carried: branch.carried,
             };
             let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
@@ -211,7 +224,7 @@ impl Sample<'_> {
         u: [f32; 4],
     ) -> Fate {
         let wo = -branch.direction;
-        let n = self.frame.medium(branch.medium).n;
+        let n = self.index(branch.medium);
         let index = [eta, k].map(|curve| curve.lanes(self.wavelengths) / n);
         let mut normal = hit.ns;
         let mut wi = reflect(wo, normal);
@@ -251,9 +264,16 @@ impl Sample<'_> {
         }
     }
 
+    /// Index of a medium on each lane.
+    #[inline]
+    pub(super) fn index(&self, medium: MediumId) -> Lanes {
+        self.scratch.media[medium.0 as usize].n
+    }
+
     /// (n_a / n_b)^2 on the way from a into b.
-    pub(super) fn index_factor(&self, a: MediumId, b: MediumId) -> f32 {
-        let ratio = self.frame.medium(a).n / self.frame.medium(b).n;
+    #[inline]
+    pub(super) fn index_factor(&self, a: MediumId, b: MediumId) -> Lanes {
+        let ratio = self.index(a) / self.index(b);
         ratio * ratio
     }
 }
@@ -274,10 +294,11 @@ impl Branch {
         self.leaves = hit.triangle;
     }
 
-    pub(super) fn enter(&mut self, medium: MediumId, index_factor: f32) {
+    /// Roulette, which looks at the factors, takes that of lane 0 for all: what it does with others is right, too.
+    pub(super) fn enter(&mut self, medium: MediumId, index_factor: Lanes) {
         self.medium = medium;
         self.throughput *= index_factor;
-        self.index_factor *= index_factor;
+        self.index_factor *= index_factor.x;
     }
 
     /// Takes a share of the path with numbers of its own.

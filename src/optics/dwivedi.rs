@@ -278,6 +278,7 @@ mod tests {
         let medium = Medium {
             name: "milk".into(),
             n: 1.0,
+            index: LaneCurve::Constant(1.0),
             sigma_a: curve(albedos.map(|albedo| 1.0 - albedo)),
             sigma_s: curve(albedos),
             emission: LaneCurve::Constant(0.0),

@@ -27,6 +27,8 @@ pub struct Medium {
     pub name: String,
     /// Refractive index at the reference wavelength.
     pub n: f32,
+    /// The index at which the lanes of paths bend: that one, or with dispersion that of each wavelength.
+    pub index: LaneCurve,
     /// Absorption coefficient in 1/m.
     pub sigma_a: LaneCurve,
     /// Scattering coefficient in 1/m.
@@ -42,6 +44,8 @@ pub struct Medium {
 /// A medium's coefficients at the wavelengths of one path.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumLanes {
+    /// Refractive index.
+    pub n: Lanes,
     /// Scattering in 1/m.
     pub sigma_s: Lanes,
     /// Extinction (absorption and scattering) in 1/m.
@@ -99,6 +103,7 @@ impl Medium {
         };
         let absorbed = if is_clear { sigma_a } else { Lanes::ZERO };
         MediumLanes {
+            n: self.index.lanes(wavelengths),
             sigma_s,
             sigma_t,
             least,
@@ -118,6 +123,16 @@ impl Medium {
         !clear && !self.density.is_homogeneous()
     }
 
+    /// True when light passes straight from one into the other: their indices are the same at every wavelength.
+    pub fn is_matched_with(&self, other: &Self) -> bool {
+        self.n == other.n && self.index == other.index
+    }
+
+    /// True when its lanes bend at indices of their own.
+    pub fn disperses(&self) -> bool {
+        !matches!(self.index, LaneCurve::Constant(_))
+    }
+
     /// True when it adds light to a path.
     pub fn glows(&self) -> bool {
         !self.emission.is_zero() && !self.sigma_a.is_zero()
@@ -133,7 +148,8 @@ impl Medium {
         let sigma_t = sigma_a + sigma_s;
         let share = |sigma: Vec4| Vec4::select(sigma.cmpgt(Vec4::ZERO), sigma / sigma_t, Vec4::ZERO);
         let added = self.emission.lanes(wavelengths) * share(sigma_a) + ambient * share(sigma_s);
-        added * (self.n * self.n)
+        let n = self.index.lanes(wavelengths);
+        added * (n * n)
     }
 }
 
@@ -260,7 +276,7 @@ fn opacity(sigma: Lanes, distance: f32) -> Lanes {
 
 /// A lane at `u` of weights that sum to 1, and where in its share u lies, below 1.
 #[inline]
-pub(super) fn pick(weights: Lanes, u: f32) -> (usize, f32) {
+pub(crate) fn pick(weights: Lanes, u: f32) -> (usize, f32) {
     let mut lane = 0;
     let mut rest = u;
     while lane < 3 && rest >= weights[lane] {
@@ -284,6 +300,7 @@ mod tests {
         let medium = Medium {
             name: "ice".into(),
             n: 1.31,
+            index: LaneCurve::Constant(1.31),
             sigma_a: curve(sigma_t.map(|s| s - sigma_s)),
             sigma_s: curve([sigma_s; 3]),
             emission: LaneCurve::Constant(0.0),
@@ -369,6 +386,7 @@ mod tests {
             let medium = Medium {
                 name: "ice".into(),
                 n: 1.31,
+                index: curve(1.31),
                 sigma_a: curve(absorbed * 870.0),
                 sigma_s: curve(870.0),
                 emission: curve(0.0),

@@ -3,7 +3,8 @@
 //! ```text
 //! sigma_a = 4 pi k / lambda
 //! ```
-//! Rays bend at the index of one wavelength, [`REFERENCE_WAVELENGTH`]; absorption and particles use all of them.
+//! Rays bend at the index of one wavelength, [`REFERENCE_WAVELENGTH`], unless the scene asks for dispersion; absorption
+//! and particles use all of them.
 
 use std::f64::consts::PI;
 
@@ -66,6 +67,15 @@ impl RefractiveIndex {
     /// The real part at which rays reflect and bend.
     pub fn for_rays(&self) -> f32 {
         self.n(REFERENCE_WAVELENGTH) as f32
+    }
+
+    /// True when the real part is not the same at every wavelength.
+    pub fn disperses(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Water { .. } | Self::Ice => true,
+            Self::Table { n, .. } => n.windows(2).any(|pair| pair[0] != pair[1]),
+        }
     }
 
     /// The absorption in 1/m that the imaginary part implies, at whole nanometres; `None` where there is none.

@@ -402,6 +402,7 @@ impl<'a> Assembly<'a> {
             heterogeneous: in_use().any(|(_, m)| m.is_heterogeneous()),
             emission: in_use().any(|(_, m)| m.glows()),
             spectral: self.world.mode == crate::spectrum::LaneMode::Spectral,
+            dispersive: in_use().any(|(_, m)| m.disperses()),
             diffuse,
             specular: self.parts.pairs.keys().any(|p| !p.matched)
                 || self.parts.surfaces.iter().any(|s| matches!(s, Surface::Conductor { .. })),

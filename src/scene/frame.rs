@@ -10,7 +10,8 @@ use crate::geometry::Ray;
 use crate::light::{Beneath, Lights};
 use crate::optics::half_space::HalfSpace;
 use crate::optics::medium::{Medium, MediumId};
-use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths, film_rgb};
+use crate::sampling::SampleStream;
+use crate::spectrum::{LaneCurve, LaneMode, Lanes, Wavelengths, film_rgb, wavelength};
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -79,6 +80,13 @@ impl Frame {
         film_rgb(self.mode, wavelengths, reflected * self.white.lanes(wavelengths))
     }
 
+    /// The wavelengths of a sample of pixels or a pass of photons, by its number `w`; where they part it matters which of
+    /// the four leads, and both choices are stratified together.
+    pub fn wavelengths(&self, w: f32, stream: &mut SampleStream) -> Wavelengths {
+        let [w, hero, ..] = if self.needs.dispersive { stream.next4() } else { [w, 0.0, 0.0, 0.0] };
+        Wavelengths::for_mode(self.mode, wavelength::of_four(w, hero))
+    }
+
     /// True where next-event estimation can find a light.
     #[inline]
     pub fn looks_for_lights(&self, id: MediumId) -> bool {
@@ -112,7 +120,7 @@ impl Frame {
     /// The boundary between a medium and the one beyond it, seen from the front of its triangle or not.
     pub fn boundary(&self, before: MediumId, beyond: MediumId, from_front: bool) -> MediumPair {
         let (front, back) = if from_front { (before, beyond) } else { (beyond, before) };
-        MediumPair { front, back, matched: self.medium(front).n == self.medium(back).n }
+        MediumPair { front, back, matched: self.medium(front).is_matched_with(self.medium(back)) }
     }
 
     /// What a triangle is.

@@ -22,6 +22,8 @@ pub struct Needs {
     pub emission: bool,
     /// Something is given over wavelength.
     pub spectral: bool,
+    /// Wavelengths bend at indices of their own.
+    pub dispersive: bool,
     /// There are diffuse surfaces.
     pub diffuse: bool,
     /// There are interfaces that refract, or metals.
@@ -57,6 +59,15 @@ impl Needs {
                 "spectral lanes",
                 self.spectral,
                 if self.spectral { "something is given over wavelength" } else { "all is given in RGB" },
+            ),
+            line(
+                "dispersion",
+                self.dispersive,
+                if self.dispersive {
+                    "render.dispersion is on and an index varies over wavelength: where that parts directions one wavelength of four goes on, which is noise of colour"
+                } else {
+                    "render.dispersion is off, or no index varies over wavelength: rays bend at that of 589.3 nm"
+                },
             ),
             line(
                 "scattering",

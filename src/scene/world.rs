@@ -168,8 +168,8 @@ impl World {
 
     /// The boundary between two media.
     pub(super) fn pair_of(&self, front: MediumId, back: MediumId) -> MediumPair {
-        let index = |id: MediumId| self.media[id.0 as usize].n;
-        MediumPair { front, back, matched: index(front) == index(back) }
+        let medium = |id: MediumId| &self.media[id.0 as usize];
+        MediumPair { front, back, matched: medium(front).is_matched_with(medium(back)) }
     }
 
     /// The `[[meshes]]` that are the same in every frame, or the others, with their places in the scene file.
@@ -216,7 +216,9 @@ fn lane_mode(description: &SceneDescription) -> LaneMode {
     if description.render.integrator == IntegratorKind::AmbientOcclusion {
         return LaneMode::Rgb;
     }
-    let spectral = description.media.values().any(medium_is_spectral)
+    let bends = description.render.dispersion && description.media.values().any(|m| m.ior.disperses());
+    let spectral = bends
+        || description.media.values().any(medium_is_spectral)
         || description.surfaces.iter().any(|s| material_is_spectral(&s.material))
         || description.sun.as_ref().is_some_and(|sun| sun.irradiance.is_spectral())
         || match &description.sky {
@@ -266,9 +268,16 @@ fn medium_of(description: &SceneDescription, name: &str, mode: LaneMode) -> Resu
         })?,
         None => (coefficients_of(medium, mode), medium.phase.clone()),
     };
+    let n = medium.ior.for_rays();
+    let disperses = description.render.dispersion && mode == LaneMode::Spectral && medium.ior.disperses();
+    let index = match disperses {
+        true => LaneCurve::sampled(|lambda| medium.ior.n(lambda)),
+        false => LaneCurve::Constant(n),
+    };
     Ok(Medium {
         name: name.into(),
-        n: medium.ior.for_rays(),
+        n,
+        index,
         sigma_a,
         sigma_s,
         emission: medium.emission.prepare(Role::Illuminant, mode),

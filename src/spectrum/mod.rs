@@ -8,6 +8,7 @@
 //!
 //! The colour of radiance L is RGB of its X, Y, Z = integral of L (xbar, ybar, zbar) over nm, without the factor
 //! 683 lm/W: D65 of luminance (Y) 1 is RGB (1, 1, 1).
+#![doc = include_str!("colour_noise.md")]
 
 pub mod blackbody;
 pub mod cie;

@@ -69,6 +69,17 @@ impl Wavelengths {
     }
 }
 
+/// The number u of which four wavelengths are sampled: `v` says which four, `hero` which of them is lane 0.
+///
+/// ```text
+/// u = (floor(4 hero) + v) / 4
+/// ```
+/// u and u + 1/4 give the same four. So n stratified numbers u are n / 4 strata of v with four unstratified ones in
+/// each; as v itself they are n. Only dispersion asks which of the four is the hero: else 0 does.
+pub fn of_four(v: f32, hero: f32) -> f32 {
+    (0.25 * ((4.0 * hero).floor() + v)).min(1.0 - f32::EPSILON * 0.5)
+}
+
 /// The colour that a path adds to the film: its lanes themselves when they are RGB, else [`Wavelengths::to_rgb`].
 pub fn film_rgb(mode: LaneMode, wavelengths: &Wavelengths, lanes: Lanes) -> Vec3 {
     match mode {
@@ -187,6 +198,33 @@ mod tests {
         }
         let deviation = (square / 4096.0).sqrt();
         assert!((0.12..0.14).contains(&deviation), "{deviation}");
+    }
+
+    /// A lane alone counts four times: one that ended adds nothing, and lane 0 has every wavelength in the end.
+    #[test]
+    fn the_hero_alone_averages_to_white() {
+        let mut sum = glam::DVec3::ZERO;
+        for (i, hero) in (0..4096).flat_map(|i| [0.1, 0.3, 0.6, 0.9].map(|hero| (i, hero))) {
+            let w = Wavelengths::sample(of_four((i as f32 + 0.5) / 4096.0, hero));
+            let alone = 4.0 * cie::d65(f64::from(w.lambda[0])) as f32;
+            sum += film_rgb(LaneMode::Spectral, &w, Lanes::new(alone, 0.0, 0.0, 0.0)).as_dvec3();
+        }
+        let white = sum / (4.0 * 4096.0);
+        assert!((white - glam::DVec3::ONE).abs().max_element() < 1e-5, "{white}");
+    }
+
+    #[test]
+    fn which_of_the_four_leads_does_not_change_the_four() {
+        for v in [0.0, 0.3, 0.999] {
+            let sets = [0.0, 0.25, 0.5, 0.75].map(|hero| Wavelengths::sample(of_four(v, hero)).lambda);
+            for (lead, set) in sets.iter().enumerate() {
+                for (lane, lambda) in set.iter().enumerate() {
+                    let same = sets[0][(lane + lead) % 4];
+                    // The number is rounded to 2^-24 of 400 nm at the most, where the table is steepest 20 times that.
+                    assert!((lambda - same).abs() < 1e-3, "{v}: {sets:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -157,6 +157,35 @@ fn a_sky_of_photons_and_everything_else() {
     compare(&folder, text, &settings, 0.03, [48, 512]);
 }
 
+/// Wavelengths that part, of photons and of the eye paths that meet them: through the ball light comes to the floor, and
+/// through it the floor is seen. What both were thinned for must not count twice.
+#[test]
+fn wavelengths_that_bend_their_own_ways() {
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("lamp.ply", &lamp())
+        .mesh("ball.ply", &sphere(DVec3::new(0.0, 0.0, 0.7), 0.6, 2));
+    let ball = "[media.glass]\nior = { wavelength = [380, 780], n = [1.8, 1.3] }\n\
+                absorption = 0.1\nscattering = 0.2\n\
+                [[surfaces]]\nmesh = \"ball.ply\"\nnormals = \"smooth\"\nfront = \"air\"\n\
+                back = \"glass\"\nmaterial = { kind = \"dielectric\" }\n";
+    let render = |more: &str| {
+        let scene = scene(&folder, &format!("{ball}[render]\ndispersion = true\n{more}"));
+        assert!(scene.frame.needs.dispersive);
+        scene
+    };
+    let by_paths = Seeds::render(&render(""), 2048, 4, GRID).means();
+    for (name, more) in
+        [("parted, gathering", "final_gather = true"), ("parted, photons at once", "final_gather = false")]
+    {
+        let photons = format!("integrator = \"photon\"\nphotons = {{ count = 20000, {more} }}\n");
+        let [near, middle, wide] = [1.0, 2.0, 4.0]
+            .map(|factor| Seeds::render(&with_radius(render(&photons), factor * 0.03), 96, 4, GRID));
+        let by_photons = Seeds::extrapolated(&near, &middle, &wide).means();
+        assert_agree(name, &by_photons, &by_paths, 0.05);
+    }
+}
+
 /// A lamp that stands in water, half in it and half in the air: no medium is that of all of it. A quarter of the light
 /// below was lost where chance's weight counted an estimate that was not made.
 #[test]

@@ -17,6 +17,7 @@ fn along(mu: f32) -> Reflection {
     let medium = Medium {
         name: "milk".into(),
         n: 1.0,
+        index: LaneCurve::Constant(1.0),
         sigma_a: LaneCurve::Rgb(Lanes::new(0.0, 0.01, 0.5, 1.0)),
         sigma_s: LaneCurve::Rgb(sigma_s / (1.0 - g)),
         emission: LaneCurve::Constant(0.0),

@@ -182,8 +182,9 @@ impl PhotonFrame {
         pass: u32,
     ) -> ((Wavelengths, f32), impl Fn(u32) -> SampleStream + Sync + use<>) {
         let seed = self.seed;
-        let [u, v, ..] = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass).next4();
-        let common = (Wavelengths::for_mode(frame.mode, u), frame.views.time(v));
+        let mut common = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass);
+        let [w, t, ..] = common.next4();
+        let common = (frame.wavelengths(w, &mut common), frame.views.time(t));
         let kinds = self.emission.as_ref().map_or(1, Emission::kinds);
         let of_kind = self.count.div_ceil(kinds);
         let stream =

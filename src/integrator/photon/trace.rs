@@ -250,7 +250,7 @@ impl Walk<'_> {
         }
         let (incident, beyond) = pair.crossed(hit.from_front);
         let frame = self.tracing.frame;
-        let eta_t_over_i = frame.medium(beyond).n / frame.medium(incident).n;
+        let eta_t_over_i = branch.drawn(self.sample.eta(incident, beyond));
         let ns = frame.geometry.interpolated_normal(found, hit.ng, self.sample.time);
         let ways = photon_ways(-branch.direction, ns, hit.ng, eta_t_over_i);
         let total: f32 = ways.iter().map(|way| way.share).sum();
@@ -288,7 +288,7 @@ impl Walk<'_> {
         }
         let frame = self.tracing.frame;
         let wi = -branch.direction;
-        let n = frame.medium(branch.medium).n;
+        let n = self.sample.index(branch.medium);
         let [eta, k] = index.map(|curve| curve.lanes(self.tracing.wavelengths) / n);
         // A mirror direction about a normal is its own reverse: the eye path from it must take the same normal.
         let ns = frame.geometry.interpolated_normal(found, hit.ng, self.sample.time);

@@ -88,6 +88,7 @@ confidence = 0.9
 max_depth = 0
 split = 1
 similarity = 2
+dispersion = true
 seed = 0
 seed_mode = "sequence"
 filter = "box"

@@ -346,6 +346,8 @@ pub struct RenderDescription {
     pub forced_scattering: u32,
     /// Order of the similarity relations that simplify scattering in thick media; 0 is exact (0).
     pub similarity: u32,
+    /// Light of every wavelength bends at its own index (false).
+    pub dispersion: bool,
     /// Seed of every random number (0).
     pub seed: u64,
     /// What frames share of their random numbers; `None` is `sequence` where that is possible, else `frame`.

@@ -20,6 +20,7 @@ impl Default for RenderDescription {
             split: 1,
             forced_scattering: 0,
             similarity: 0,
+            dispersion: false,
             seed: 0,
             seed_mode: None,
             filter: FilterKind::Box,
@@ -89,7 +90,9 @@ impl RenderDescription {
     /// Whether a frame that was assembled for these settings serves others too: most settings are for what is done with it.
     pub fn share_frames(&self, other: &Self) -> bool {
         let is_open = |settings: &Self| settings.integrator == IntegratorKind::AmbientOcclusion;
-        self.similarity == other.similarity && is_open(self) == is_open(other)
+        self.similarity == other.similarity
+            && self.dispersion == other.dispersion
+            && is_open(self) == is_open(other)
     }
 
     /// These settings with others in their place: keys of `[render]`, with commas in between, such as
@@ -132,6 +135,7 @@ fn read_over(value: &Value<'_>, default: &RenderDescription) -> Result<RenderDes
         split: whole("split", 0, MOST_SPLITS, default.split)?,
         forced_scattering: whole("forced_scattering", 0, MOST_SPLITS, default.forced_scattering)?,
         similarity: whole("similarity", 0, HIGHEST_ORDER as i128, default.similarity)?,
+        dispersion: table.get("dispersion").map_or(Ok(default.dispersion), |v| v.boolean())?,
         seed: table.get("seed").map_or(Ok(default.seed), |v| v.integer(0, u64::MAX.into()))?,
         seed_mode: table
             .get("seed_mode")

@@ -56,6 +56,12 @@ pub const SCENES: [Scene; 3] = [
 ];
 
 impl Scene {
+    /// True where photons are its light.
+    #[allow(dead_code)] // not of every bench
+    pub fn photons(&self) -> bool {
+        self.photons
+    }
+
     /// Writes the scene into a folder with its files where they are; with a part forced in by what the scene says.
     pub fn write(&self, folder: &Path, forced: Option<&Part>) -> PathBuf {
         let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("sequences").join(self.name);
