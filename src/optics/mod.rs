@@ -13,6 +13,7 @@ pub mod half_space;
 pub mod ice;
 pub mod lorenz_mie;
 pub mod medium;
+pub mod medium_reduction;
 pub mod phase;
 pub mod refraction;
 pub mod refractive_index;

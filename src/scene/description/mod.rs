@@ -26,6 +26,7 @@ mod regions;
 mod render;
 mod scene;
 mod sky;
+mod spectral_phase;
 mod spectrum_value;
 mod sun;
 mod surfaces;
@@ -45,7 +46,7 @@ use glam::{DVec3, Vec3};
 
 use crate::mesh::Region;
 use crate::optics::RefractiveIndex;
-use crate::optics::phase::PhaseFunction;
+use crate::optics::phase::MediumPhase;
 use crate::spectrum::Spectrum;
 
 /// Everything that a scene file says.
@@ -190,7 +191,7 @@ pub struct MediumDescription {
     /// Radiance of an endless depth, seen from a medium of index 1 (0).
     pub emission: Spectrum,
     /// Phase function of the scattering.
-    pub phase: PhaseFunction,
+    pub phase: MediumPhase,
     /// Where the medium is how dense.
     pub density: DensityDescription,
 }
