@@ -14,6 +14,7 @@ mod scene_file {
     mod camera;
     mod daylight;
     mod models;
+    mod phases;
 }
 
 fn parse(text: &str) -> Result<SceneDescription, SceneError> {
@@ -44,7 +45,7 @@ fn an_empty_file_has_every_default() {
     assert_eq!((&air.ior, &air.absorption), (&RefractiveIndex::Constant(1.0), &None));
     assert_eq!(
         (&air.scattering, &air.phase),
-        (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic))
+        (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic).into())
     );
     assert_eq!((scene.domain, scene.surfaces.len(), scene.sun), (None, 0, None));
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Constant(0.0)));
@@ -74,7 +75,7 @@ fn a_whole_scene_is_read_as_written() {
     let sea = &scene.media["sea"];
     let absorption = AbsorptionDescription::Spectrum(Spectrum::Rgb([0.35, 0.07, 0.03]));
     assert_eq!((&sea.ior, &sea.absorption), (&RefractiveIndex::Constant(1.33), &Some(absorption)));
-    assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
+    assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }).into());
     assert_eq!((scene.render.similarity, scene.render.seed_mode), (2, Some(SeedMode::Sequence)));
     assert!(scene.render.dispersion);
     let sun = scene.sun.unwrap();

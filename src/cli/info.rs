@@ -20,7 +20,7 @@ use crate::scene::description::{
 };
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
-use crate::spectrum::LaneMode;
+use crate::spectrum::{LaneCurve, LaneMode};
 
 #[derive(Debug, Args)]
 pub struct InfoArguments {
@@ -162,12 +162,12 @@ fn describe_media(world: &World) -> String {
             if labels.is_empty() { String::new() } else { format!(" (label {})", labels.join(", ")) };
         let _ = writeln!(
             text,
-            "  {}{labels}: index {}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {:.3}",
+            "  {}{labels}: index {}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {}",
             medium.name,
             describe_index(medium),
             medium.sigma_a.maximum(),
             medium.sigma_s.maximum(),
-            medium.phase.mean_cosine()
+            describe_mean_cosine(&medium.phase.mean_cosine())
         );
         if let Some(model) = &world.description.media[&medium.name].model {
             text += &describe_model(model);
@@ -209,6 +209,12 @@ fn describe_index(medium: &Medium) -> String {
         true => format!("{:.4} to {:.4}", medium.index.minimum(), medium.index.maximum()),
         false => format!("{:.4}", medium.n),
     }
+}
+
+/// A number, or those that it lies between.
+fn describe_mean_cosine(g: &LaneCurve) -> String {
+    let (least, most) = (g.minimum(), g.maximum());
+    if least == most { format!("{most:.3}") } else { format!("{least:.3} to {most:.3} over wavelength") }
 }
 
 fn describe_density(described: &DensityDescription, density: &Density) -> Option<String> {

@@ -28,6 +28,7 @@ mod regions;
 mod render;
 mod scene;
 mod sky;
+mod spectral_phase;
 mod spectrum_value;
 mod sun;
 mod sun_place;
@@ -51,7 +52,7 @@ use glam::{DVec3, Vec3};
 use crate::light::ClearAir;
 use crate::mesh::Region;
 use crate::optics::RefractiveIndex;
-use crate::optics::phase::PhaseFunction;
+use crate::optics::phase::MediumPhase;
 use crate::spectrum::Spectrum;
 
 /// Everything that a scene file says.
@@ -196,7 +197,7 @@ pub struct MediumDescription {
     /// Radiance of an endless depth, seen from a medium of index 1 (0).
     pub emission: Spectrum,
     /// Phase function of the scattering.
-    pub phase: PhaseFunction,
+    pub phase: MediumPhase,
     /// Where the medium is how dense.
     pub density: DensityDescription,
     /// What takes the place of index, coefficients and phase function.
