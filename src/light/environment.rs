@@ -1,6 +1,6 @@
 //! Light from infinity: constant, a latitude-longitude picture, or a clear sky.
 //!
-//! The picture lies around the scene as a [`SphereMap`] does, its top row straight up. Radiance is interpolated
+//! The picture lies around the scene with its top row straight up (`sphere_map.rs`). Radiance is interpolated
 //! between the texels' centres; directions are drawn in proportion to the interpolated picture's integral over each texel
 //! times the sine of the polar angle.
 
