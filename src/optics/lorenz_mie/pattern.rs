@@ -196,3 +196,20 @@ fn add(sums: &mut [[f64; ANGLES]; 8], [one, two]: &[[f64; 4]; 2], [odd, even]: &
         sums[7][j] += one[3] * p - two[3] * r;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_registers_change_no_bit() {
+        let host = Complex64::new(1.33, 1e-9);
+        let sphere = |i: i32| Sphere::new(Complex64::new(1.5, 0.01), host, 1.3_f64.powi(i)).unwrap();
+        let spheres: Vec<Sphere> = (0..20).map(sphere).collect();
+        let pattern = Pattern::new(&spheres, &[1.0; 20]);
+        let cosines = [1.0, 0.99, 0.9, 0.7, 0.5, 0.3, 0.1, 0.0];
+        let last = pattern.spheres.iter().map(|s| s.terms.len()).max().unwrap();
+        let plain = Block { spheres: &pattern.spheres, cosines, last }.run();
+        assert_eq!(pattern.both_ways(&cosines), plain.map(|values| values.to_vec()));
+    }
+}

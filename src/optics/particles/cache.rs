@@ -5,6 +5,7 @@
 //! damaged, cut short or renamed is noticed and computed anew. It is written under another name first and then takes its own
 //! in one step: any number of processes may share a folder. A folder that is missing or cannot be written is no error.
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -42,10 +43,15 @@ impl Cache {
 
     /// The folder that `FLOE_CACHE` names (`off`: none), else one of this user's among the temporary files.
     pub fn of_user() -> Self {
-        match std::env::var_os(VARIABLE) {
+        Self::named(std::env::var_os(VARIABLE), &std::env::temp_dir())
+    }
+
+    /// That of a value of the variable.
+    fn named(value: Option<OsString>, temporary: &Path) -> Self {
+        match value {
             Some(value) if value == "off" => Self::off(),
             Some(value) if !value.is_empty() => Self::in_folder(Path::new(&value)),
-            _ => Self { folder: folder_of_user(&std::env::temp_dir()) },
+            _ => Self { folder: folder_of_user(temporary) },
         }
     }
 
@@ -198,6 +204,17 @@ mod tests {
         let cache = Cache::in_folder(&file);
         assert!(ask(&cache, &KEY, 1.0).1 && ask(&cache, &KEY, 1.0).1);
         assert_eq!(fs::read(&file).unwrap(), b"not a folder");
+    }
+
+    #[test]
+    fn the_variable_names_the_folder() {
+        let temporary = tempfile::tempdir().unwrap();
+        let named = |value: Option<&str>| Cache::named(value.map(OsString::from), temporary.path());
+        assert_eq!(named(Some("off")), Cache::off());
+        assert_eq!(named(Some("kept")), Cache::in_folder(Path::new("kept")));
+        let of_user = named(None);
+        assert_eq!(named(Some("")), of_user);
+        assert!(of_user.folder().unwrap().starts_with(temporary.path()));
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! p_s is the mean over the spheres of a species, each counting as much as it scatters; (2) is of the molecules of water
-//! `[MOREL74]`. Between angles p is linear in the cosine, as [`crate::optics::phase::tabulated`] takes it, and between
+//! `[MOREL74]`. Between angles p is linear in the cosine, as tabulated phase functions take it, and between
 //! wavelengths linear as well; both were chosen by what that leaves (`tests/particles`).
 
 use std::f64::consts::PI;
