@@ -16,9 +16,22 @@
 //! than all of them did, and where they are alike the weight is 1. Drawing the lane anew at each particle is the same as
 //! drawing it once and following its functions, for P are the chances that a path like this one is of each lane.
 //!
-//! The lanes of a path part as the product of their functions' ratios does: after many wide turns in media whose lanes
-//! differ much, one lane carries all the light, and the noise is that of a path that carries one wavelength. How soon, is
-//! measured in `spectral.md`.
+//! The lanes of a path part as the product of their functions' ratios does, until one carries all the light; the noise is
+//! then that of paths which carry one wavelength. The deviation of a sample's colours (r - g and b - g) and of its luminance,
+//! over the mean, of a ball under a sky of which half is dark, with g falling evenly from 400 to 700 nm:
+//!
+//! | g | 20 collisions | 85 | 400 | 1900 |
+//! |---|---|---|---|---|
+//! | 0.85 | 0.29, 1.01 | 0.29, 0.99 | 0.29, 0.98 | 0.28, 0.97 |
+//! | 0.855 to 0.85 | 0.29, 1.00 | 0.32, 0.99 | 0.41, 0.98 | 0.79, 0.99 |
+//! | 0.87 to 0.83 | 0.60, 1.02 | 1.1, 1.04 | 1.7, 1.08 | 1.9, 1.10 |
+//! | 0.95 to 0.75 | 2.5, 1.23 | 3.3, 1.39 | 3.5, 1.40 | 3.5, 1.40 |
+//!
+//! So 0.87 to 0.83 takes 15 times as many samples for the same noise in colour after 85 collisions, and 1.1 times as many for
+//! that in luminance (`tests/analytic/spectral_phases.rs`). A sample takes as long as with one function where lights are
+//! looked for at each collision (0.9 to 1.2 times), and under an even sky, where else eight collisions are drawn at a time, 1.2
+//! times (20 collisions) to 4.3 times (1900). No other weights of the same paths have less noise: these are what any that are
+//! right average to, given the path.
 
 use std::sync::Arc;
 
