@@ -93,7 +93,7 @@ enum OnLanes<'a> {
 }
 
 impl SpectralPhase {
-    /// Values that are not negative, one row of all angles for each wavelength, in any unit, at strictly rising wavelengths in nm and strictly
+    /// Values that are not negative, `[wavelength][angle]` in any unit, at strictly rising wavelengths in nm and strictly
     /// rising angles in radians, from 0 to pi; `None` when they are not, when those of any wavelength are all zero, or when
     /// their numbers do not agree.
     pub fn tabulated(wavelengths: &[f64], angles: &[f64], values: &[Vec<f64>]) -> Option<Self> {
