@@ -26,6 +26,7 @@ mod phase;
 mod regions;
 mod render;
 mod scene;
+mod settings;
 mod sky;
 mod spectrum_value;
 mod sun;
@@ -39,6 +40,7 @@ pub use framed::default_scene;
 pub use framing::automatic_placement;
 pub use meshes::{MeshContents, MeshDescription};
 pub use models::{Model, ModelKind, ModelPhase};
+pub use nearest::suggestion;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
