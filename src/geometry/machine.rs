@@ -409,3 +409,37 @@ pub(crate) fn with_best<W: WithLanes>(work: W) -> W::Output {
     }
     work.run::<Portable>()
 }
+
+/// Work in loops that compilers make wide registers of. All that it calls must be compiled into it.
+pub(crate) trait Work {
+    type Output;
+    fn run(self) -> Self::Output;
+}
+
+/// Does the work with the widest registers that this machine has; the results are the same with any.
+#[inline(always)]
+pub(crate) fn in_wide_registers<W: Work>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+        fn widest<W: Work>(work: W) -> W::Output {
+            work.run()
+        }
+        #[target_feature(enable = "avx2")]
+        fn wide<W: Work>(work: W) -> W::Output {
+            work.run()
+        }
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl")
+        {
+            // The features were found just now.
+            return unsafe { widest(work) };
+        }
+        if is_x86_feature_detected!("avx2") {
+            // The feature was found just now.
+            return unsafe { wide(work) };
+        }
+    }
+    work.run()
+}

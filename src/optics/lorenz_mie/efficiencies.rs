@@ -13,9 +13,8 @@
 //! host that absorbs `[FRISVAD07]`. There Q_ext may be negative: the sphere takes the place of what absorbs more, and
 //! what a medium absorbs altogether has to count its host.
 
-use num_complex::Complex64;
-
-use super::Coefficients;
+use super::lanes::{Lanes, dot, minus, plus, scaled, square};
+use super::{Coefficients, Sphere};
 
 /// Cross sections over pi r^2, and how far scattering goes on forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,38 +32,20 @@ pub struct Efficiencies {
 impl Coefficients {
     /// (1) to (5).
     pub fn efficiencies(&self) -> Efficiencies {
-        let sums = self.sums();
-        let (size, host) = (self.sphere.size(), self.sphere.host());
-        let square = size * size;
-        let efficiencies = Efficiencies {
-            extinction: 2.0 / square * (sums.forward / (host * host)).re, // (1)
-            scattering: 2.0 / square * sums.squares * host_factor(2.0 * self.sphere.x().im) / host.norm_sqr(), // (2)
-            backward: sums.backward.norm_sqr() / (square * host.norm_sqr()), // (4)
-            asymmetry: 2.0 * sums.products / sums.squares,                   // (5)
-        };
+        let efficiencies = self.sums().efficiencies(0, &self.sphere);
         debug_assert!(self.is_balanced(&efficiencies), "{:?}: {efficiencies:?}", self.sphere);
         efficiencies
     }
 
     /// Sum of (2n+1) (|a_n|^2 + |b_n|^2).
     pub(super) fn squares(&self) -> f64 {
-        self.sums().squares
+        self.sums().squares[0]
     }
 
-    fn sums(&self) -> Sums {
-        let mut sums = Sums::default();
-        let mut sign = -1.0;
-        for (i, &[a, b]) in self.terms.iter().enumerate() {
-            let n = i as f64 + 1.0;
-            let weight = 2.0 * n + 1.0;
-            sums.forward += weight * (a + b);
-            sums.squares += weight * (a.norm_sqr() + b.norm_sqr());
-            sums.backward += weight * sign * (a - b);
-            sign = -sign;
-            sums.products += weight / (n * (n + 1.0)) * (a * b.conj()).re;
-            if let Some(&[next_a, next_b]) = self.terms.get(i + 1) {
-                sums.products += n * (n + 2.0) / (n + 1.0) * (a * next_a.conj() + b * next_b.conj()).re;
-            }
+    fn sums(&self) -> Sums<1> {
+        let mut sums = Sums::new();
+        for (i, terms) in self.terms.iter().enumerate() {
+            sums.add(i as f64 + 1.0, &terms.map(|term| Lanes::of(|_| term)));
         }
         sums
     }
@@ -84,12 +65,59 @@ impl Coefficients {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    forward: Complex64,
-    backward: Complex64,
-    squares: f64,
-    products: f64,
+/// The sums of (1) to (5) for spheres side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<const N: usize> {
+    forward: Lanes<N>,
+    backward: Lanes<N>,
+    /// Sum of (2n+1) (|a_n|^2 + |b_n|^2).
+    pub squares: [f64; N],
+    products: [f64; N],
+    before: [Lanes<N>; 2],
+    sign: f64,
+}
+
+impl<const N: usize> Sums<N> {
+    pub fn new() -> Self {
+        let zero = Lanes::ZERO;
+        let (squares, products) = ([0.0; N], [0.0; N]);
+        Self { forward: zero, backward: zero, squares, products, before: [zero; 2], sign: 1.0 }
+    }
+
+    /// Adds the terms of n; n rises from 1.
+    #[inline(always)]
+    pub fn add(&mut self, n: f64, terms: &[Lanes<N>; 2]) {
+        let weight = 2.0 * n + 1.0;
+        self.sign = -self.sign;
+        let signed = self.sign * weight;
+        let within = weight / (n * (n + 1.0));
+        // That of the pair of n - 1 and n.
+        let across = (n - 1.0) * (n + 1.0) / n;
+        for i in 0..N {
+            let (a, b) = (terms[0].at(i), terms[1].at(i));
+            let (a_before, b_before) = (self.before[0].at(i), self.before[1].at(i));
+            self.forward.set(i, plus(self.forward.at(i), scaled(plus(a, b), weight)));
+            self.backward.set(i, plus(self.backward.at(i), scaled(minus(a, b), signed)));
+            self.squares[i] += weight * (square(a) + square(b));
+            self.products[i] += within * dot(a, b) + across * (dot(a_before, a) + dot(b_before, b));
+            self.before[0].set(i, a);
+            self.before[1].set(i, b);
+        }
+    }
+
+    /// (1) to (5) of the sphere in a lane.
+    pub fn efficiencies(&self, lane: usize, sphere: &Sphere) -> Efficiencies {
+        let (size, host) = (sphere.size(), sphere.host());
+        let area = size * size;
+        let (forward, backward, squares) =
+            (self.forward.at(lane), self.backward.at(lane), self.squares[lane]);
+        Efficiencies {
+            extinction: 2.0 / area * (forward / (host * host)).re, // (1)
+            scattering: 2.0 / area * squares * host_factor(2.0 * sphere.x().im) / host.norm_sqr(), // (2)
+            backward: backward.norm_sqr() / (area * host.norm_sqr()), // (4)
+            asymmetry: 2.0 * self.products[lane] / squares,        // (5)
+        }
+    }
 }
 
 /// exp(-alpha) / gamma of (3), which cancels where alpha is small and runs over where it is large.

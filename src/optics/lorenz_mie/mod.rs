@@ -16,9 +16,14 @@ mod amplitudes;
 mod bessel;
 mod coefficients;
 mod efficiencies;
+mod lanes;
+mod many;
+mod pattern;
 mod sphere;
 
 pub use coefficients::Coefficients;
 pub use efficiencies::Efficiencies;
+pub use many::efficiencies;
 pub use num_complex::Complex64;
+pub use pattern::Pattern;
 pub use sphere::{Sphere, SphereError};

@@ -11,15 +11,16 @@
 
 use std::f64::consts::PI;
 
-use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use super::super::lorenz_mie::{Coefficients, Complex64, Efficiencies, Sphere};
+use super::super::lorenz_mie::{Efficiencies, Sphere, efficiencies};
+use super::quadrature::Quadrature;
 use super::{Host, Mixture, MixtureError, Species};
 use crate::spectrum::curve::interpolate;
 use crate::spectrum::{LaneMode, Role, Spectrum, Wavelengths};
 
 /// Coefficients of a mixture, each at every wavelength.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bulk {
     /// Wavelengths in nm.
     pub wavelengths: Vec<f64>,
@@ -33,12 +34,15 @@ pub struct Bulk {
     pub g: Vec<f64>,
     /// What each species does, in the order of the mixture.
     pub species: Vec<SpeciesBulk>,
-    /// Estimate of the greatest relative error of the integrals over radius.
+    /// Bound of the relative errors of extinction and scattering, and of the error of g, that come from taking integrals
+    /// over radius at some radii: how far the same rule is off with a third of them, at the worst wavelength. What is
+    /// absorbed is as exact relative to the extinction; that of spheres which hardly absorb comes from resonances narrower
+    /// than any step, and is known to a tenth.
     pub relative_error: f64,
 }
 
 /// What one species does, without its host, at every wavelength.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeciesBulk {
     /// Name of the species.
     pub name: String,
@@ -50,92 +54,126 @@ pub struct SpeciesBulk {
     pub g: Vec<f64>,
 }
 
-const NODES: usize = 400;
-
 impl Mixture {
     /// What the mixture absorbs and scatters at some wavelengths in nm, in any order.
     ///
     /// # Errors
-    /// What is wrong with the mixture.
+    /// What is wrong with the mixture, or a wavelength that is none.
     pub fn bulk(&self, wavelengths: &[f64]) -> Result<Bulk, MixtureError> {
         self.validate()?;
-        let species: Vec<SpeciesBulk> =
-            self.species.iter().map(|s| s.bulk(&self.host, wavelengths)).collect::<Result<_, _>>()?;
+        if let Some(&value) = wavelengths.iter().find(|w| !(w.is_finite() && **w > 0.0)) {
+            return Err(MixtureError::Wavelength { value });
+        }
+        let sums: Vec<Vec<[Sums; 2]>> =
+            self.species.iter().map(|s| s.sums(&self.host, wavelengths)).collect::<Result<_, _>>()?;
         let mut bulk = Bulk {
             wavelengths: wavelengths.to_vec(),
-            n: Vec::new(),
+            n: wavelengths.iter().map(|&lambda| self.host.index.n(lambda)).collect(),
             sigma_a: Vec::new(),
             sigma_s: Vec::new(),
             g: Vec::new(),
-            species,
+            species: self.species.iter().zip(&sums).map(|(s, sums)| s.bulk(sums)).collect(),
             relative_error: 0.0,
         };
         for (i, &lambda) in wavelengths.iter().enumerate() {
-            let host = at(&self.host.absorption, lambda);
-            let molecular = self.host.molecular.as_ref().map_or(0.0, |s| at(s, lambda));
-            let sum = |f: &dyn Fn(&SpeciesBulk) -> f64| bulk.species.iter().map(f).sum::<f64>();
-            let scattered = molecular + sum(&|s| s.sigma_s[i]); // (1)
-            let absorbed = (host + sum(&|s| s.sigma_t[i] - s.sigma_s[i])).max(0.0); // (2)
-            let ahead = sum(&|s| s.g[i] * s.sigma_s[i]); // (3)
-            bulk.n.push(self.host.index.n(lambda));
-            bulk.sigma_a.push(absorbed);
-            bulk.sigma_s.push(scattered);
-            bulk.g.push(if scattered > 0.0 { ahead / scattered } else { 0.0 });
+            let host = self.host.sums(lambda)?;
+            let [whole, coarse] = [0, 1].map(|rule| sums.iter().fold(host, |sum, s| sum.plus(&s[i][rule])));
+            bulk.sigma_a.push((whole.extinction - whole.scattering).max(0.0)); // (2)
+            bulk.sigma_s.push(whole.scattering); // (1)
+            bulk.g.push(whole.g());
+            bulk.relative_error = bulk.relative_error.max(whole.error(&coarse));
         }
         Ok(bulk)
-    }
-
-    fn validate(&self) -> Result<(), MixtureError> {
-        for Species { name, volume_fraction, sizes, .. } in &self.species {
-            if !(0.0..=1.0).contains(volume_fraction) {
-                return Err(MixtureError::VolumeFraction { species: name.clone(), value: *volume_fraction });
-            }
-            sizes.validate().map_err(|source| MixtureError::Sizes { species: name.clone(), source })?;
-        }
-        let sum: f64 = self.species.iter().map(|s| s.volume_fraction).sum();
-        if sum > 1.0 {
-            let names: Vec<&str> = self.species.iter().map(|s| s.name.as_str()).collect();
-            return Err(MixtureError::NoRoom { species: names.join(", "), sum });
-        }
-        Ok(())
     }
 }
 
 impl Species {
-    fn bulk(&self, host: &Host, wavelengths: &[f64]) -> Result<SpeciesBulk, MixtureError> {
-        let sums: Vec<[f64; 3]> =
-            wavelengths.par_iter().map(|&lambda| self.at(host, lambda)).collect::<Result<_, _>>()?;
-        let g = |s: &[f64; 3]| if s[1] > 0.0 { s[2] / s[1] } else { 0.0 };
-        Ok(SpeciesBulk {
-            name: self.name.clone(),
-            sigma_t: sums.iter().map(|s| s[0]).collect(),
-            sigma_s: sums.iter().map(|s| s[1]).collect(),
-            g: sums.iter().map(g).collect(),
-        })
+    /// The integrals at each wavelength, by all radii and by a third of them.
+    fn sums(&self, host: &Host, wavelengths: &[f64]) -> Result<Vec<[Sums; 2]>, MixtureError> {
+        if self.volume_fraction == 0.0 {
+            return Ok(vec![[Sums::default(); 2]; wavelengths.len()]);
+        }
+        let Quadrature { radii, numbers } = Quadrature::new(&self.sizes);
+        let at = |&lambda: &f64| self.spheres(host, &radii, lambda);
+        let spheres: Vec<Vec<Sphere>> = wavelengths.iter().map(at).collect::<Result<_, _>>()?;
+        let found = efficiencies(&spheres.concat());
+        let of_one = |found: &[Efficiencies]| {
+            let mut sums = [Sums::default(); 2];
+            for ((e, r), numbers) in found.iter().zip(&radii).zip(&numbers) {
+                for (sum, number) in sums.iter_mut().zip(numbers) {
+                    sum.add(e, PI * r * r * number * self.volume_fraction);
+                }
+            }
+            sums
+        };
+        Ok(found.chunks(radii.len()).map(of_one).collect())
     }
 
-    fn at(&self, host: &Host, lambda: f64) -> Result<[f64; 3], MixtureError> {
-        let index = |i: &super::super::RefractiveIndex| Complex64::new(i.n(lambda), i.k(lambda));
-        let (particle, surroundings) = (index(&self.index), index(&host.index));
-        let [least, greatest] = self.sizes.range().map(libm::log);
-        let mut sums = [0.0; 3];
-        let mut volume = 0.0;
-        for i in 0..NODES {
-            let r = libm::exp(least + (greatest - least) * (i as f64 + 0.5) / NODES as f64);
-            let number = self.sizes.number(r) * r;
-            volume += 4.0 / 3.0 * PI * r.powi(3) * number;
-            let sphere =
-                Sphere::new(particle, surroundings, 2.0 * PI * r / (lambda * 1e-9)).map_err(|source| {
-                    MixtureError::Sphere { species: self.name.clone(), radius: r, wavelength: lambda, source }
-                })?;
-            let Efficiencies { extinction, scattering, asymmetry, .. } =
-                Coefficients::new(sphere).efficiencies();
-            let area = PI * r * r * number;
-            sums[0] += extinction * area;
-            sums[1] += scattering * area;
-            sums[2] += asymmetry * scattering * area;
+    fn bulk(&self, sums: &[[Sums; 2]]) -> SpeciesBulk {
+        SpeciesBulk {
+            name: self.name.clone(),
+            sigma_t: sums.iter().map(|s| s[0].extinction).collect(),
+            sigma_s: sums.iter().map(|s| s[0].scattering).collect(),
+            g: sums.iter().map(|s| s[0].g()).collect(),
         }
-        Ok(sums.map(|s| s / volume * self.volume_fraction))
+    }
+}
+
+impl Host {
+    /// What the host itself does.
+    fn sums(&self, lambda: f64) -> Result<Sums, MixtureError> {
+        let [absorption, scattering] = self.coefficients_at(lambda);
+        for (coefficient, value) in [("absorption", absorption), ("molecular scattering", scattering)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(MixtureError::Host { coefficient, wavelength: lambda, value });
+            }
+        }
+        Ok(Sums { extinction: absorption + scattering, scattering, forward: 0.0 })
+    }
+
+    /// Absorption, and scattering of the molecules, in 1/m.
+    pub(super) fn coefficients_at(&self, lambda: f64) -> [f64; 2] {
+        let molecular = self.molecular.as_ref().map_or(0.0, |spectrum| at(spectrum, lambda));
+        [at(&self.absorption, lambda), molecular]
+    }
+}
+
+/// Coefficients at one wavelength, in 1/m.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    extinction: f64,
+    scattering: f64,
+    /// g times the scattering.
+    forward: f64,
+}
+
+impl Sums {
+    /// Adds spheres of a shadow, in 1/m.
+    fn add(&mut self, e: &Efficiencies, shadow: f64) {
+        self.extinction += e.extinction * shadow;
+        self.scattering += e.scattering * shadow;
+        // A sphere that scatters nothing has no g.
+        self.forward += if e.scattering > 0.0 { e.asymmetry * e.scattering * shadow } else { 0.0 };
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            extinction: self.extinction + other.extinction,
+            scattering: self.scattering + other.scattering,
+            forward: self.forward + other.forward,
+        }
+    }
+
+    fn g(&self) -> f64 {
+        if self.scattering > 0.0 { self.forward / self.scattering } else { 0.0 } // (3)
+    }
+
+    /// How far another rule is off.
+    fn error(&self, other: &Self) -> f64 {
+        let relative = |a: f64, b: f64| if a == b { 0.0 } else { (b / a - 1.0).abs() };
+        relative(self.extinction, other.extinction)
+            .max(relative(self.scattering, other.scattering))
+            .max((self.g() - other.g()).abs())
     }
 }
 

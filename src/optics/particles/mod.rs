@@ -6,11 +6,14 @@
 //!
 //! Radii and lengths are in metres, wavelengths in nm in vacuum, coefficients in 1/m, angles in radians.
 
+mod angles;
 mod bulk;
 mod cache;
 mod ensemble;
 mod error;
+mod key;
 mod mixture;
+mod quadrature;
 mod sizes;
 
 pub use bulk::{Bulk, SpeciesBulk};

@@ -175,3 +175,79 @@ fn between(radii: &[f64], number: &[f64], r: f64) -> f64 {
         from + (to - from) * ((r - start) / (end - start))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadrature::Quadrature;
+    use super::*;
+
+    /// Cylinders that grow slimmer with their length, as many of each length as l^-2 says.
+    fn cylinders(count: u32) -> (Vec<Cylinder>, Vec<f64>) {
+        let cylinder = |i: u32| {
+            let length = 1e-5 * 800_f64.powf(f64::from(i) / f64::from(count));
+            Cylinder { radius: 2e-3 * length.powf(0.8), length }
+        };
+        let cylinders: Vec<Cylinder> = (0..=count).map(cylinder).collect();
+        let number = cylinders.iter().map(|c| c.length.powi(-2)).collect();
+        (cylinders, number)
+    }
+
+    /// Integrals over all cylinders, by the trapezoid rule in ln l: their volume and their surface.
+    fn volume_and_area(cylinders: &[Cylinder], number: &[f64]) -> [f64; 2] {
+        let of_one = |(c, n): (&Cylinder, &f64)| {
+            let (radius, length) = (c.radius, c.length);
+            [PI * radius * radius * length, 2.0 * PI * radius * (radius + length)].map(|x| x * n * length)
+        };
+        let values: Vec<[f64; 2]> = cylinders.iter().zip(number).map(of_one).collect();
+        let ends = [values[0], values[values.len() - 1]];
+        [0, 1].map(|k| values.iter().map(|v| v[k]).sum::<f64>() - 0.5 * (ends[0][k] + ends[1][k]))
+    }
+
+    #[test]
+    fn a_sphere_has_the_ratio_of_volume_to_area_of_its_cylinder() {
+        let cylinder = Cylinder { radius: 2e-5, length: 6e-5 };
+        let spheres = SizeDistribution::equal_volume_to_area(&[cylinder], &[1.0]).unwrap();
+        let SizeDistribution::Table { radii, .. } = spheres else { panic!("{spheres:?}") };
+        // 3 c l / (2 (c + l)) = 22.5 um.
+        assert!((radii[0] / 2.25e-5 - 1.0).abs() < 1e-14, "{radii:?}");
+    }
+
+    /// All together as well, with an error of the order of the step of the table, squared.
+    #[test]
+    fn all_spheres_have_the_ratio_of_volume_to_area_of_all_cylinders() {
+        let error = |count: u32| {
+            let (cylinders, number) = cylinders(count);
+            let [volume, area] = volume_and_area(&cylinders, &number);
+            let spheres = SizeDistribution::equal_volume_to_area(&cylinders, &number).unwrap();
+            let Quadrature { radii, numbers } = Quadrature::new(&spheres);
+            let surface: f64 = radii.iter().zip(&numbers).map(|(r, n)| 4.0 * PI * r * r * n[0]).sum();
+            // The spheres' volume is 1.
+            (surface * volume / area - 1.0).abs()
+        };
+        let (coarse, fine) = (error(25), error(100));
+        // A quarter of the step.
+        assert!(fine < 1e-3 && (coarse / fine - 16.0).abs() < 1.0, "{coarse:e} {fine:e}");
+    }
+
+    #[test]
+    fn tables_are_powers_of_the_radius_between_their_radii() {
+        let table = SizeDistribution::Table { radii: vec![1.0, 4.0, 8.0], number: vec![16.0, 1.0, 0.0] };
+        for (r, expected) in [(1.0, 16.0), (2.0, 4.0), (6.0, 0.5), (8.0, 0.0)] {
+            assert!((table.number(r) - expected).abs() < 1e-14, "{r}");
+        }
+        assert_eq!(SizeDistribution::Table { radii: vec![2.0], number: vec![3.0] }.number(2.0), 3.0);
+    }
+
+    /// The tails that are cut have less than a millionth of the volume: erfc(4.9 / sqrt 2) = 9.6e-7.
+    #[test]
+    fn a_log_normal_distribution_keeps_its_volume() {
+        let sizes = SizeDistribution::LogNormal { median: 1e-6, deviation: 0.5 };
+        let [least, greatest] = sizes.range();
+        let volume = |from: f64, to: f64| -> f64 {
+            let r = |i: u32| from * (to / from).powf((f64::from(i) + 0.5) / 5000.0);
+            (0..5000).map(|i| sizes.number(r(i)) * r(i).powi(4)).sum::<f64>() * (to / from).ln() / 5000.0
+        };
+        let rest = 1.0 - volume(least, greatest) / volume(least * 0.1, greatest * 10.0);
+        assert!(rest > 1e-7 && rest < 1e-6, "{rest:e}");
+    }
+}
