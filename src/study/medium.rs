@@ -101,6 +101,9 @@ pub struct MediumReport {
     /// Where light goes; JSON has it only where it is asked for.
     #[serde(skip)]
     pub phase: EnsemblePhase,
+    /// Whether the scattering of its particles was in the cache; no file says so.
+    #[serde(skip)]
+    pub was_kept: bool,
 }
 
 /// What particles of one kind do.

@@ -167,7 +167,7 @@ fn everything_is_written_into_a_folder_the_same_each_time() {
     assert_eq!(folder.read("a.csv"), folder.read("a/optics.csv"));
     let page = String::from_utf8(folder.read("a/optics.html")).unwrap();
     assert!(
-        page.matches("<svg").count() == 4 && page.contains("sigma_s'") && !page.contains("href"),
+        page.matches("<svg").count() == 4 && page.contains("sigma_t") && !page.contains("href"),
         "{page}"
     );
     folder.write("taken", "");
@@ -242,4 +242,21 @@ fn settings_and_wavelengths_that_cannot_be_are_usage_errors() {
     }
     floe(&folder, &["optics", "baltic", "--column", "-1"]).ended(2).says(&["metres above 0"]);
     floe(&folder, &["optics", "baltic", "--phase"]).ended(2).says(&["--json"]);
+}
+
+#[test]
+fn only_the_line_of_the_time_tells_what_the_cache_had() {
+    let folder = Folder::new();
+    let run = |cache: &str, more: &[&str]| {
+        let output =
+            command(&folder, &[&["optics", "skimmed"], more].concat()).env("FLOE_CACHE", cache).output();
+        String::from_utf8(output.unwrap().stdout).unwrap()
+    };
+    let tables = |text: &str| text.split("computed in ").next().unwrap().to_owned();
+    let [first, again, off] = ["cache", "cache", "off"].map(|cache| run(cache, &[]));
+    let kept = "with scattering from the cache";
+    assert!(!first.contains(kept) && again.contains(kept) && !off.contains(kept), "{first}{again}{off}");
+    assert!(tables(&first) == tables(&again) && tables(&first) == tables(&off), "{first}{again}{off}");
+    let [kept, computed] = ["cache", "off"].map(|cache| run(cache, &["--json", "--phase"]));
+    assert!(kept == computed && kept.contains("\"phase\""));
 }

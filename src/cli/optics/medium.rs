@@ -33,7 +33,7 @@ pub(super) struct MediumArguments {
     #[arg(long, value_name = "LIST", value_parser = wavelengths)]
     wavelengths: Option<WavelengthList>,
     /// Metres of the medium that white light is shown through
-    #[arg(long, value_name = "M", default_value_t = 10.0, value_parser = length)]
+    #[arg(long, value_name = "M", default_value_t = 10.0, value_parser = length, allow_hyphen_values = true)]
     column: f64,
     /// A second medium beside it; --set is for the first
     #[arg(long, value_name = "OTHER")]
@@ -87,7 +87,11 @@ fn results(arguments: &MediumArguments) -> Result<Exit, Refusal> {
     let shown = match arguments.json {
         true => found.json(arguments.phase),
         // The only thing here that is not the same every time.
-        false => format!("{}computed in {seconds:.2} s\n", found.text()),
+        false => {
+            let kept = found.reports().iter().filter(|report| report.was_kept).count();
+            let kept = if kept > 0 { ", with scattering from the cache" } else { "" };
+            format!("{}computed in {seconds:.2} s{kept}\n", found.text())
+        }
     };
     let files = arguments.csv.as_deref().map_or(Exit::Complete, |file| write(file, &found.csv()));
     let folder = arguments.output.as_deref().map_or(Exit::Complete, |folder| found.write_all(folder));

@@ -83,11 +83,14 @@ fn phases(reports: &[&MediumReport], least: f64) -> Vec<Series> {
     for (i, report) in reports.iter().enumerate() {
         let style = if i == 0 { Style::Line } else { Style::Dashes };
         for lambda in DRAWN {
-            let pairs = report.phase.angles.iter().zip(phase::at(&report.phase, lambda));
-            let points = pairs.map(|(angle, value)| Point::new(angle.to_degrees(), value));
+            let degrees: Vec<f64> = report.phase.angles.iter().map(|angle| angle.to_degrees()).collect();
+            let values = phase::at(&report.phase, lambda);
+            // What lies below the axis is nearly that of the last such angle.
+            let first = degrees.partition_point(|angle| *angle <= least).max(1) - 1;
+            let points = degrees.iter().zip(values).skip(first);
             series.push(Series {
                 name: named(reports, i, &format!("{lambda} nm")),
-                points: points.filter(|point| point.x >= least).collect(),
+                points: points.map(|(angle, value)| Point::new(angle.max(least), value)).collect(),
                 style,
             });
         }

@@ -17,23 +17,23 @@ impl MediumStudy {
     /// # Errors
     /// What is wrong with a mixture.
     pub fn run(&self, cache: &Cache) -> Result<MediumReport, MixtureError> {
-        let (fine, bulk, phase) = match &self.subject {
+        let (fine, bulk, phase, was_kept) = match &self.subject {
             Subject::Mixture { mixture, one_lobe } => {
-                let Scattering { bulk: fine, phase } = mixture.scattering(cache)?;
+                let (Scattering { bulk: fine, phase }, was_kept) = mixture.scattering_kept(cache)?;
                 let bulk = match chosen(&fine, &self.wavelengths) {
                     Some(bulk) => bulk,
                     None => mixture.bulk(&self.wavelengths)?,
                 };
                 let phase = if *one_lobe { phase::one_lobe(&fine.wavelengths, &fine.g) } else { phase };
-                (fine, bulk, phase)
+                (fine, bulk, phase, was_kept)
             }
             Subject::Given { index, medium } => {
                 let visible: Vec<f64> = (380..=780).step_by(STEP).map(f64::from).collect();
                 let [fine, bulk] = [&visible, &self.wavelengths].map(|at| given(index, medium, at));
-                (fine, bulk, phase::tabulated(&medium.phase))
+                (fine, bulk, phase::tabulated(&medium.phase), false)
             }
         };
-        Ok(self.report(&fine, bulk, phase))
+        Ok(MediumReport { was_kept, ..self.report(&fine, bulk, phase) })
     }
 
     /// `fine` is what colours are of.
@@ -75,6 +75,7 @@ impl MediumStudy {
             depth: Colour::reflected(over(seen.reflectance)),
             warnings: self.warnings.clone(),
             phase,
+            was_kept: false,
         }
     }
 }

@@ -26,6 +26,9 @@ const LINE: f64 = 18.0;
 /// Mean width of a letter of names, generous.
 const LETTER: f64 = 8.2;
 
+/// What a number along the base takes.
+const ROOM: f64 = 36.0;
+
 /// Degrees between two rays of the grid.
 const RAY: i32 = 30;
 
@@ -87,14 +90,17 @@ fn draw_grid(svg: &mut String, radii: &Scale) {
         let [at_x, at_y] = towards(degrees, RADIUS + 18.0);
         let _ = writeln!(numbers, r#"<text x="{}" y="{}">{degrees}°</text>"#, pixel(at_x), pixel(at_y + 4.5));
     }
-    for Tick { at, label, .. } in radii.ticks().into_iter().filter(|tick| tick.has_line) {
+    let mut last = RADIUS + ROOM;
+    for Tick { at, label, .. } in radii.ticks().into_iter().filter(|tick| tick.has_line).rev() {
+        // Numbers of the two sides would meet in the middle.
+        let label = label.filter(|_| at >= 24.0 && last - at >= ROOM);
+        last = if label.is_some() { at } else { last };
         let r = pixel(at);
         lines += &format!("M{} {y}A{r} {r} 0 0 1 {} {y}", pixel(x - at), pixel(x + at));
         for side in [-1.0, 1.0] {
             let along = pixel(x + side * at);
             ticks += &format!("M{along} {y}v6");
-            // Numbers of the two sides would meet in the middle.
-            if let Some(label) = label.as_ref().filter(|_| at >= 24.0) {
+            if let Some(label) = &label {
                 let _ = writeln!(numbers, r#"<text x="{along}" y="{}">{}</text>"#, y + 19.0, label.svg());
             }
         }
