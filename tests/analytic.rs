@@ -25,6 +25,7 @@ mod analytic {
     mod reflected_where;
     mod single_scattering;
     mod spectral;
+    mod spectral_phases;
     mod sunlight;
     mod thick_media;
     mod thick_media_measured;

@@ -13,6 +13,7 @@ use proptest::prelude::*;
 mod scene_file {
     mod camera;
     mod models;
+    mod phases;
 }
 
 fn parse(text: &str) -> Result<SceneDescription, SceneError> {
@@ -43,7 +44,7 @@ fn an_empty_file_has_every_default() {
     assert_eq!((&air.ior, &air.absorption), (&RefractiveIndex::Constant(1.0), &None));
     assert_eq!(
         (&air.scattering, &air.phase),
-        (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic))
+        (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic).into())
     );
     assert_eq!((scene.domain, scene.surfaces.len(), scene.sun), (None, 0, None));
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Constant(0.0)));
@@ -73,7 +74,7 @@ fn a_whole_scene_is_read_as_written() {
     let sea = &scene.media["sea"];
     let absorption = AbsorptionDescription::Spectrum(Spectrum::Rgb([0.35, 0.07, 0.03]));
     assert_eq!((&sea.ior, &sea.absorption), (&RefractiveIndex::Constant(1.33), &Some(absorption)));
-    assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
+    assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }).into());
     assert_eq!((scene.render.similarity, scene.render.seed_mode), (2, Some(SeedMode::Sequence)));
     let sun = scene.sun.unwrap();
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
@@ -368,12 +369,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[render]\nconfidence = 95", 2, 14, "render.confidence: 95: write a confidence from 0.5 to 0.9999"),
     ("[render]\nseed = -1", 2, 8, "render.seed: -1: write a whole number from 0 to 18446744073709551615"),
     ("[render]\nseed = 18446744073709551616", 2, 8, "render.seed: 18446744073709551616: write a whole number"),
-    (
-        "[render]\nsimilarity = 5",
-        2,
-        14,
-        "render.similarity: 5: write a whole number from 0 to 4",
-    ),
+    ("[render]\nsimilarity = 5", 2, 14, "render.similarity: 5: write a whole number from 0 to 4"),
     (
         "[render]\nsimilarity = \"high\"",
         2,

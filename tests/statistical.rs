@@ -13,6 +13,7 @@ mod statistical {
     mod lights;
     mod phase_functions;
     mod phase_limits;
+    mod spectral_phases;
     mod tests_of_fit;
     mod warps;
 }

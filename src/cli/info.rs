@@ -17,7 +17,7 @@ use crate::scene::camera_path::StartPlaces;
 use crate::scene::description::{DensityDescription, MeshContents, Model};
 use crate::scene::world::World;
 use crate::sequence::{FrameSelection, format_numbers, gaps};
-use crate::spectrum::LaneMode;
+use crate::spectrum::{LaneCurve, LaneMode};
 
 #[derive(Debug, Args)]
 pub struct InfoArguments {
@@ -132,12 +132,12 @@ fn describe_media(world: &World) -> String {
             if labels.is_empty() { String::new() } else { format!(" (label {})", labels.join(", ")) };
         let _ = writeln!(
             text,
-            "  {}{labels}: index {:.4}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {:.3}",
+            "  {}{labels}: index {:.4}, absorption up to {:.4} /m, scattering up to {:.4} /m, mean cosine {}",
             medium.name,
             medium.n,
             medium.sigma_a.maximum(),
             medium.sigma_s.maximum(),
-            medium.phase.mean_cosine()
+            describe_mean_cosine(&medium.phase.mean_cosine())
         );
         if let Some(model) = &world.description.media[&medium.name].model {
             text += &describe_model(model);
@@ -172,6 +172,12 @@ fn describe_model(model: &Model) -> String {
     }
     let _ = writeln!(text, "    error of the integrals over radius {:.0e}", bulk.relative_error);
     text
+}
+
+/// A number, or those that it lies between.
+fn describe_mean_cosine(g: &LaneCurve) -> String {
+    let (least, most) = (g.minimum(), g.maximum());
+    if least == most { format!("{most:.3}") } else { format!("{least:.3} to {most:.3} over wavelength") }
 }
 
 fn describe_density(described: &DensityDescription, density: &Density) -> Option<String> {

@@ -1,4 +1,4 @@
-//! Random walks in a ball through nearly grey media: eight collisions at a time.
+//! Random walks in a ball through nearly grey media that scatter alike in all lanes: eight collisions at a time.
 //!
 //! There flights and angles depend on nothing that the path has been through. So those of the next collisions are
 //! drawn together in wide registers, from the numbers that [`Sample::walk`] would take for them one after the other.
@@ -37,18 +37,21 @@ use crate::spectrum::Lanes;
 const AHEAD: usize = 8;
 
 impl Sample<'_> {
-    /// False in coloured media, from a walk's last collisions on, and from the roulette of long walks on.
+    /// False in coloured media, where phase functions differ by lane, from a walk's last collisions on, and from the roulette of long walks on.
     #[inline]
     pub(super) fn walks_ahead(&self, branch: &Branch) -> bool {
         let medium = &self.scratch.media[branch.medium.0 as usize];
-        medium.grey().is_some() && branch.interactions < last_ahead(self.max_depth)
+        let is_alike = self.frame.medium(branch.medium).phase.one().is_some();
+        medium.grey().is_some() && is_alike && branch.interactions < last_ahead(self.max_depth)
     }
 
     /// Goes on with a path as [`Sample::walk`] does.
     pub(super) fn walk_ahead(&mut self, branch: &mut Branch) -> Fate {
         let medium = self.scratch.media[branch.medium.0 as usize];
-        let Some((mean_free_path, albedo)) = medium.grey() else { return Fate::GoesOn };
-        let phase = &self.frame.medium(branch.medium).phase;
+        let phase = self.frame.medium(branch.medium).phase.one();
+        let (Some((mean_free_path, albedo)), Some(phase)) = (medium.grey(), phase) else {
+            return Fate::GoesOn;
+        };
         let (clearing, last) = (self.scratch.around.clearing, last_ahead(self.max_depth));
         let before = branch.interactions;
         let walk = Walk { medium, mean_free_path, albedo, clearing, last, branch };
@@ -241,7 +244,7 @@ mod tests {
             sigma_a: LaneCurve::Rgb(Lanes::new(0.1, 0.02, 0.002, 0.0) + absorbed),
             sigma_s: LaneCurve::Constant(120.0),
             emission: LaneCurve::Constant(0.0),
-            phase: PhaseFunction::Isotropic(Isotropic),
+            phase: PhaseFunction::Isotropic(Isotropic).into(),
             density: Density::Homogeneous,
         };
         medium.lanes(&Wavelengths::RGB)

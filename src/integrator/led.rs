@@ -19,7 +19,9 @@ impl Scratch {
     pub(super) fn lead(&mut self, frame: &Frame) {
         if self.led.is_empty() && frame.led.contains(&true) {
             let lanes = frame.media.iter().zip(&self.media).zip(&frame.led);
-            let dwivedi = lanes.map(|((m, lanes), led)| led.then(|| Dwivedi::new(lanes, &m.phase)));
+            let dwivedi = lanes.map(|((m, lanes), led)| {
+                m.phase.one().filter(|_| *led).map(|phase| Dwivedi::new(lanes, phase))
+            });
             self.led.extend(dwivedi);
         }
     }

@@ -16,7 +16,7 @@ use super::{EyeSample, FirstHit, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
 use crate::optics::medium::MediumId;
-use crate::optics::phase::Deflection;
+use crate::optics::phase::{Deflection, PhaseLanes};
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
 use crate::scene::geometry::SurfaceHit;
@@ -291,8 +291,8 @@ impl Sample<'_> {
                 motion: Vec3::ZERO,
             });
         }
-        let phase = &self.frame.medium(branch.medium).phase;
-        let forward = branch.direction;
+        let phase = self.frame.medium(branch.medium).phase.at(self.wavelengths);
+        let (forward, throughput) = (branch.direction, branch.throughput);
         // The scattered light of lamps is that of photons, where there are any.
         let lamps = self.photons.is_none();
         let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
@@ -307,23 +307,21 @@ impl Sample<'_> {
                 interactions: branch.interactions,
             };
             let response = |wi: Vec3| {
-                let turned = Deflection::between(forward, wi);
-                let phase_w = phase.pdf_w(turned);
-                let pdf_w = led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w));
-                (Lanes::splat(phase.value(turned)), pdf_w)
+                let (value, phase_w) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
+                (value, led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w)))
             };
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let turned = match &led {
-            None => phase.sample(forward, [u[1], u[2]]),
-            Some(led) => {
+        let turned = match (&led, phase) {
+            (Some(led), PhaseLanes::One(phase)) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
                 self.scratch.around.flight = flight;
-                turned
+                turned.into()
             }
+            _ => phase.sample(forward, [u[1], u[2]], throughput),
         };
-        if self.photons.is_some() && !photon::is_peak(turned.weight * turned.pdf_w) {
+        if self.photons.is_some() && !photon::is_peak(turned.greatest) {
             branch.lookups_left = 0;
         }
         branch.scatterings_left -= 1;

@@ -10,7 +10,41 @@
 //! ```
 
 use super::path::{Branch, Fate, Sample};
-use crate::optics::phase::PhaseFunction;
+use crate::optics::phase::{PhaseFunction, PhaseLanes, SpectralLanes};
+use crate::spectrum::Lanes;
+use glam::Vec3;
+
+/// How particles turn a path.
+trait Turns {
+    /// A new direction and its weight, for a path that arrives with this throughput.
+    fn turn(&self, forward: Vec3, u: [f32; 2], throughput: Lanes) -> (Vec3, Lanes);
+}
+
+impl Turns for PhaseFunction {
+    #[inline(always)]
+    fn turn(&self, forward: Vec3, u: [f32; 2], _: Lanes) -> (Vec3, Lanes) {
+        let (wi, weight) = self.turn(forward, u);
+        let wi = match self {
+            // It does not come from the one before, so that no errors add up.
+            Self::Isotropic(_) => wi,
+            _ => near_unit(wi),
+        };
+        (wi, Lanes::splat(weight))
+    }
+}
+
+impl Turns for SpectralLanes<'_> {
+    #[inline(always)]
+    fn turn(&self, forward: Vec3, u: [f32; 2], throughput: Lanes) -> (Vec3, Lanes) {
+        let turned = self.sample(forward, u, throughput);
+        (turned.wi, turned.weight)
+    }
+}
+
+#[inline(always)]
+fn near_unit(direction: Vec3) -> Vec3 {
+    direction * (1.5 - 0.5 * direction.length_squared())
+}
 
 impl Sample<'_> {
     /// Goes on with a path until its next flight would leave the ball, and leaves that flight to be drawn again.
@@ -18,15 +52,16 @@ impl Sample<'_> {
         if self.walks_ahead(branch) {
             return self.walk_ahead(branch);
         }
-        match &self.frame.medium(branch.medium).phase {
-            phase @ PhaseFunction::Isotropic(_) => self.walk_by(branch, phase),
-            phase @ PhaseFunction::HenyeyGreenstein(_) => self.walk_by(branch, phase),
-            phase => self.walk_by(branch, phase),
+        match self.frame.medium(branch.medium).phase.at(self.wavelengths) {
+            PhaseLanes::One(phase @ PhaseFunction::Isotropic(_)) => self.walk_by(branch, phase),
+            PhaseLanes::One(phase @ PhaseFunction::HenyeyGreenstein(_)) => self.walk_by(branch, phase),
+            PhaseLanes::One(phase) => self.walk_by(branch, phase),
+            PhaseLanes::Spectral(phase) => self.walk_by(branch, &phase),
         }
     }
 
     #[inline(always)]
-    fn walk_by(&mut self, walked: &mut Branch, phase: &PhaseFunction) -> Fate {
+    fn walk_by(&mut self, walked: &mut Branch, phase: &impl Turns) -> Fate {
         let medium = self.scratch.media[walked.medium.0 as usize];
         let clearing = self.scratch.around.clearing;
         let mut branch = *walked;
@@ -40,15 +75,12 @@ impl Sample<'_> {
             if !clearing.holds(point) {
                 break;
             }
-            let (wi, weight) = phase.turn(branch.direction, [u[1], u[2]]);
+            let collided = medium.scatter_weight(&flight);
+            let (wi, weight) = phase.turn(branch.direction, [u[1], u[2]], branch.throughput * collided);
             branch.stream = stream;
             branch.origin = point;
-            branch.direction = match phase {
-                // It does not come from the one before, so that no errors add up.
-                PhaseFunction::Isotropic(_) => wi,
-                _ => wi * (1.5 - 0.5 * wi.length_squared()),
-            };
-            branch.throughput *= medium.scatter_weight(&flight) * weight;
+            branch.direction = wi;
+            branch.throughput *= collided * weight;
             fate = branch.goes_on(u[3]);
             if fate == Fate::Ends {
                 break;

@@ -281,7 +281,7 @@ mod tests {
             sigma_a: curve(albedos.map(|albedo| 1.0 - albedo)),
             sigma_s: curve(albedos),
             emission: LaneCurve::Constant(0.0),
-            phase: phase.clone(),
+            phase: phase.clone().into(),
             density: Density::Homogeneous,
         };
         medium.lanes(&Wavelengths::RGB)

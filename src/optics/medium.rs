@@ -12,7 +12,7 @@
 use glam::Vec4;
 
 use super::density::Density;
-use super::phase::PhaseFunction;
+use super::phase::MediumPhase;
 use crate::geometry::elementary::{exp4, ln_1p, minus_ln_of_rest, one_minus_exp4};
 use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
 
@@ -34,7 +34,7 @@ pub struct Medium {
     /// Le: the radiance of an endless depth that does not scatter, over n^2.
     pub emission: LaneCurve,
     /// Where scattered light goes.
-    pub phase: PhaseFunction,
+    pub phase: MediumPhase,
     /// What both coefficients are multiplied by from place to place.
     pub density: Density,
 }
@@ -110,6 +110,11 @@ impl Medium {
             clear: sigma_t == Lanes::ZERO,
             grey: least > 0.0 && most - least <= GREY * least,
         }
+    }
+
+    /// sigma_s (1 - g) in 1/m: the scattering of what is similar at order 1 ([`super::similarity`]).
+    pub fn reduced_scattering(&self) -> LaneCurve {
+        self.sigma_s.combined(&self.phase.mean_cosine(), |s, g| s * (1.0 - g))
     }
 
     /// True when it takes more from light in some places than in others.
@@ -276,21 +281,26 @@ pub(super) fn pick(weights: Lanes, u: f32) -> (usize, f32) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::phase::{Isotropic, PhaseFunction, SpectralPhase};
     use super::*;
+    use crate::spectrum::Spectrum;
+
+    fn medium(sigma_a: LaneCurve, sigma_s: LaneCurve) -> Medium {
+        Medium {
+            name: "ice".into(),
+            n: 1.31,
+            sigma_a,
+            sigma_s,
+            emission: LaneCurve::Constant(0.0),
+            phase: PhaseFunction::Isotropic(Isotropic).into(),
+            density: Density::Homogeneous,
+        }
+    }
 
     /// What is not scattered is absorbed.
     fn lanes_of(sigma_t: [f32; 3], sigma_s: f32) -> MediumLanes {
         let curve = |values: [f32; 3]| LaneCurve::Rgb(Vec4::new(values[0], values[1], values[2], 0.0));
-        let medium = Medium {
-            name: "ice".into(),
-            n: 1.31,
-            sigma_a: curve(sigma_t.map(|s| s - sigma_s)),
-            sigma_s: curve([sigma_s; 3]),
-            emission: LaneCurve::Constant(0.0),
-            phase: PhaseFunction::Isotropic(super::super::phase::Isotropic),
-            density: Density::Homogeneous,
-        };
-        medium.lanes(&Wavelengths::RGB)
+        medium(curve(sigma_t.map(|s| s - sigma_s)), curve([sigma_s; 3])).lanes(&Wavelengths::RGB)
     }
 
     /// The share of the distances below x is that which free flights have below x, over that below the length.
@@ -365,17 +375,7 @@ mod tests {
     fn what_is_absorbed_next_to_nothing_is_absorbed() {
         for absorbed in [1e-7_f32, 3e-7, 1e-6] {
             let curve = |value| LaneCurve::Constant(value);
-            let phase = PhaseFunction::Isotropic(super::super::phase::Isotropic);
-            let medium = Medium {
-                name: "ice".into(),
-                n: 1.31,
-                sigma_a: curve(absorbed * 870.0),
-                sigma_s: curve(870.0),
-                emission: curve(0.0),
-                phase,
-                density: Density::Homogeneous,
-            };
-            let lanes = medium.lanes(&Wavelengths::RGB);
+            let lanes = medium(curve(absorbed * 870.0), curve(870.0)).lanes(&Wavelengths::RGB);
             let (mut throughput, mut length) = (Vec4::ONE, 0.0);
             for i in 0..100_000_u32 {
                 let u = (f64::from(i) * 0.618_033_988_749_895).fract() as f32;
@@ -387,5 +387,16 @@ mod tests {
             let got = 1.0 - f64::from(throughput.x);
             assert!((got / expected - 1.0).abs() < 0.03, "{absorbed}: {got} {expected}");
         }
+    }
+
+    /// sigma_s (1 - g), each wavelength with its own g.
+    #[test]
+    fn scattering_is_reduced_lane_by_lane() {
+        let g = Spectrum::Table { wavelengths: vec![400.0, 500.0], values: vec![-0.5, 0.9] };
+        let phase = SpectralPhase::henyey_greenstein(g).unwrap().into();
+        let medium = Medium { phase, ..medium(LaneCurve::Constant(0.0), LaneCurve::Constant(10.0)) };
+        let wavelengths = Wavelengths { lambda: [400.0, 450.0, 500.0, 600.0], pdf: [1.0; 4] };
+        let off = medium.reduced_scattering().lanes(&wavelengths) - Vec4::new(15.0, 8.0, 1.0, 1.0);
+        assert!(off.abs().max_element() < 1e-5, "{off}");
     }
 }

@@ -12,11 +12,12 @@
 //! r_vs = r_43 / (0.6^2 + 1),   c_s = 0.6 r_vs                                                          (6)
 //! k_riboflavin = ln 10 (0.17 / 376.3682) / (100 / 1.03) (3.3e6 / 0.25654) A(lambda) lambda / (4 pi)     (7)
 //! ```
-//! `[FRISVAD07]`, w in per cent of the mass, P the pressure of homogenisation in MPa, r in um where no other unit stands; read in the
-//! program that its authors published. At 1 MPa and below milk is as the cow gives it. The index of water is that of
-//! Hale and Querry `[HALE73]` to three digits, with which the published figures were computed; n and k of fat are
-//! Michalski's, A is the absorbance of riboflavin of PhotochemCAD, both as that program has them. It compares with
-//! the reduced scattering that `[NARASIMHAN06]` measured of regular milk: 8 to 16 % less at 20 MPa (`tests/models/milk.rs`).
+//! `[FRISVAD07]`, w in per cent of the mass, P the pressure of homogenisation in MPa, r in um where no other unit
+//! stands; read in the program that its authors published. At 1 MPa and below milk is as the cow gives it. The index of
+//! water is that of Hale and Querry `[HALE73]` to three digits, with which the published figures were computed; n and k
+//! of fat are those of `[MICHALSKI01]`, A is the absorbance of riboflavin of PhotochemCAD, both as that program has them. It
+//! compares with the reduced scattering that `[NARASIMHAN06]` measured of regular milk: 8 to 16 % less at 20 MPa
+//! (`tests/models/milk.rs`).
 
 use std::f64::consts::PI;
 

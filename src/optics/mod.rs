@@ -15,6 +15,7 @@ pub mod half_space;
 pub mod ice;
 pub mod lorenz_mie;
 pub mod medium;
+pub mod medium_reduction;
 pub mod milk;
 pub mod particles;
 pub mod phase;

@@ -148,7 +148,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// From 1 to -1.
-fn cosines() -> impl Iterator<Item = f64> {
+pub(super) fn cosines() -> impl Iterator<Item = f64> {
     (0..=CELLS).map(|i| 1.0 - 2.0 * i as f64 / CELLS as f64)
 }
 

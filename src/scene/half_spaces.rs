@@ -92,9 +92,8 @@ fn thick(medium: &Medium, bounds: &Bounds, extent: f32) -> Option<Reflected> {
     let optical_size = extinction * extent;
     let nearest = bounds.min.max(-bounds.max).max_element();
     let is_unresolved = optical_size > 0.0 && f32::EPSILON * extinction * nearest > UNRESOLVED;
-    let evenly = 1.0 - medium.phase.mean_cosine();
-    let lost = |s: f32, a: f32| transmittance_bound(s * evenly, a, extent) as f32;
-    let lost = f64::from(medium.sigma_s.combined(&medium.sigma_a, lost).maximum());
+    let lost = |s: f32, a: f32| transmittance_bound(s, a, extent) as f32;
+    let lost = f64::from(medium.reduced_scattering().combined(&medium.sigma_a, lost).maximum());
     ((optical_size > WALKED || is_unresolved) && lost <= LOST).then(|| Reflected {
         medium: medium.name.clone(),
         optical_size,

@@ -4,26 +4,22 @@
 //! host absorbs is not, and is taken at every nanometre.
 
 use super::description::{Model, ModelPhase};
-use crate::optics::particles::{Bulk, Cache, MixtureError};
-use crate::optics::phase::{HenyeyGreenstein, PhaseFunction};
+use crate::optics::particles::{Bulk, Cache, MixtureError, Scattering};
+use crate::optics::phase::{Isotropic, MediumPhase, PhaseFunction, SpectralPhase};
 use crate::spectrum::cie::{NANOMETRES, nanometre};
 use crate::spectrum::curve::interpolate;
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum, Wavelengths};
 
 /// Absorption and scattering in 1/m, and whereto is scattered.
-pub(super) fn light_in(
-    model: &Model,
-    mode: LaneMode,
-) -> Result<([LaneCurve; 2], PhaseFunction), MixtureError> {
-    let scattering = model.mixture.scattering(&Cache::of_user())?;
-    let bulk = &scattering.bulk;
-    let curves = [absorbed(model, bulk), table(&bulk.wavelengths, &bulk.sigma_s)];
-    let g = bulk.g.iter().sum::<f64>() / bulk.g.len() as f64;
-    let phase = match model.phase {
-        ModelPhase::LorenzMie | ModelPhase::HenyeyGreenstein => {
-            PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: g as f32 })
-        }
+pub(super) fn light_in(model: &Model, mode: LaneMode) -> Result<([LaneCurve; 2], MediumPhase), MixtureError> {
+    let Scattering { bulk, phase } = model.mixture.scattering(&Cache::of_user())?;
+    let spectral = match model.phase {
+        ModelPhase::LorenzMie => SpectralPhase::tabulated(&phase.wavelengths, &phase.angles, &phase.values),
+        ModelPhase::HenyeyGreenstein => SpectralPhase::henyey_greenstein(table(&bulk.wavelengths, &bulk.g)),
     };
+    // Where nothing scatters there is no phase function, and none is needed.
+    let phase = spectral.map_or_else(|| PhaseFunction::Isotropic(Isotropic).into(), MediumPhase::from);
+    let curves = [absorbed(model, &bulk), table(&bulk.wavelengths, &bulk.sigma_s)];
     Ok((curves.map(|curve| curve.prepare(Role::Coefficient, mode)), phase))
 }
 

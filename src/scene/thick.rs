@@ -6,15 +6,16 @@
 //! Where tau* is [`THICK`] or more, scattering is replaced by what is similar to it ([`crate::optics::similarity`]).
 //! Media of varying density are left alone: somewhere they are thin.
 //!
-//! Media that absorb and let next to nothing through lead their walks to the surface ([`crate::optics::dwivedi`]), which changes no expectation.
+//! Media that absorb and let next to nothing through lead their walks to the surface ([`crate::optics::dwivedi`]), which changes no expectation;
+//! not those whose phase function differs from wavelength to wavelength.
 
 use super::geometry::Geometry;
 use super::surface::Surface;
 use crate::geometry::Bounds;
 use crate::optics::dwivedi;
 use crate::optics::medium::Medium;
-use crate::optics::similarity::Reduction;
-use crate::spectrum::LaneCurve;
+use crate::optics::medium_reduction::MediumReduction;
+use crate::optics::phase::PhaseFunction;
 
 /// The reduced optical size from which on media are reduced; measured, see [`crate::integrator`].
 pub const THICK: f32 = 4.0;
@@ -31,14 +32,14 @@ pub struct Reduced {
     pub medium: String,
     /// The order of the similarity relations.
     pub order: u32,
-    /// The share of collisions that is left.
-    pub alpha: f64,
+    /// The share of collisions that is left, the greatest of all wavelengths.
+    pub alpha: f32,
 }
 
 /// Reduces the thick media of a frame, those that have a reduction.
 pub(super) fn reduce(
     media: &mut [Medium],
-    reductions: &[Option<Reduction>],
+    reductions: &[Option<MediumReduction>],
     order: u32,
     endless: &[bool],
     boxes: &[Bounds],
@@ -47,16 +48,14 @@ pub(super) fn reduce(
     for ((medium, reduction), (endless, bounds)) in
         media.iter_mut().zip(reductions).zip(endless.iter().zip(boxes))
     {
-        let Some(Reduction { alpha, phase }) = reduction else { continue };
+        let Some(MediumReduction { alpha, phase }) = reduction else { continue };
         if medium.sigma_s.is_zero() || !medium.density.is_homogeneous() {
             continue;
         }
         if is_thick(medium, *endless, bounds) {
-            let share = *alpha as f32;
-            medium.sigma_s =
-                medium.sigma_s.combined(&LaneCurve::Constant(share), |sigma_s, alpha| sigma_s * alpha);
+            medium.sigma_s = medium.sigma_s.combined(alpha, |sigma_s, alpha| sigma_s * alpha);
             medium.phase = phase.clone();
-            reduced.push(Reduced { medium: medium.name.clone(), order, alpha: *alpha });
+            reduced.push(Reduced { medium: medium.name.clone(), order, alpha: alpha.maximum() });
         }
     }
     reduced
@@ -72,22 +71,21 @@ pub(super) fn led(media: &[Medium], endless: &[bool], boxes: &[Bounds]) -> Vec<b
 
 /// True where much is absorbed, but not nearly all.
 fn is_worth_leading(medium: &Medium) -> bool {
-    let rest = 1.0 - medium.phase.mean_cosine();
-    let albedo = |s: f32, a: f32| if s > 0.0 { s * rest / (s * rest + a) } else { 0.0 };
-    let albedo = medium.sigma_s.combined(&medium.sigma_a, albedo).maximum();
-    medium.density.is_homogeneous() && medium.phase.is_sampled_exactly() && LED.contains(&albedo)
+    let albedo = |s: f32, a: f32| if s > 0.0 { s / (s + a) } else { 0.0 };
+    let albedo = medium.reduced_scattering().combined(&medium.sigma_a, albedo).maximum();
+    let is_drawn_exactly = medium.phase.one().is_some_and(PhaseFunction::is_sampled_exactly);
+    medium.density.is_homogeneous() && is_drawn_exactly && LED.contains(&albedo)
 }
 
 /// True where walks that are led the wrong way do not matter: next to no light gets through.
 fn is_opaque(medium: &Medium, bounds: &Bounds) -> bool {
-    let rest = 1.0 - medium.phase.mean_cosine();
-    let kappa = medium.sigma_s.combined(&medium.sigma_a, |s, a| dwivedi::decay(s * rest, a));
+    let kappa = medium.reduced_scattering().combined(&medium.sigma_a, dwivedi::decay);
     kappa.minimum() * bounds.size().min_element() >= OPAQUE
 }
 
 /// True where the reduced optical size is [`THICK`] or more.
 fn is_thick(medium: &Medium, is_endless: bool, bounds: &Bounds) -> bool {
-    let per_metre = medium.sigma_s.minimum() * (1.0 - medium.phase.mean_cosine());
+    let per_metre = medium.reduced_scattering().minimum();
     let extent = if is_endless { f32::INFINITY } else { bounds.size().min_element() };
     per_metre > 0.0 && per_metre * extent >= THICK
 }

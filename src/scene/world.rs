@@ -20,7 +20,8 @@ use crate::light::{Environment, Sun};
 use crate::mesh::{Region, VelocityName};
 use crate::optics::density::Density;
 use crate::optics::medium::{Medium, MediumId};
-use crate::optics::similarity::Reduction;
+use crate::optics::medium_reduction::MediumReduction;
+use crate::optics::phase::MediumPhase;
 use crate::sequence::{FrameNumber, SequenceError, frame_path, has_place, is_sequence};
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum};
 
@@ -38,7 +39,7 @@ pub struct World {
     /// Media by [`MediumId`]; the first is that of region 0.
     pub media: Vec<Medium>,
     /// What takes the place of the media's scattering in frames where they are thick, if the scene asks for it.
-    pub(super) reductions: Vec<Option<Reduction>>,
+    pub(super) reductions: Vec<Option<MediumReduction>>,
     /// The sky.
     pub environment: Environment,
     /// The sun.
@@ -83,7 +84,7 @@ impl World {
             Sun::new(sun.direction, sun.angular_diameter, irradiance)
         });
         let order = description.render.similarity as usize;
-        let reductions = media.iter().map(|medium| Reduction::of(&medium.phase, order)).collect();
+        let reductions = media.iter().map(|medium| MediumReduction::of(&medium.phase, order)).collect();
         let (still, contents) = (Parts::default(), Vec::new());
         let mut world = Self {
             description,
@@ -238,7 +239,8 @@ fn medium_is_spectral(medium: &MediumDescription) -> bool {
         Some(given) => given.extinction.is_spectral() || given.albedo.is_spectral(),
         None => medium.absorbed().is_spectral() || medium.scattering.is_spectral(),
     };
-    coefficients || medium.emission.is_spectral() || medium.model.is_some()
+    let phase = matches!(medium.phase, MediumPhase::Spectral(_));
+    coefficients || phase || medium.emission.is_spectral() || medium.model.is_some()
 }
 
 fn media_of(

@@ -1,6 +1,6 @@
 //! Media so thick that paths collide thousands of times.
 
-use floe::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction};
+use floe::optics::phase::{HenyeyGreenstein, Isotropic, MediumPhase, PhaseFunction};
 use floe::spectrum::Wavelengths;
 use glam::DVec3;
 
@@ -136,7 +136,7 @@ fn walks_in_balls_end_at_the_depth_that_was_asked_for() {
 fn only_thick_media_that_scatter_forward_are_reduced() {
     let folder = tray().mesh("ball.ply", &sphere(DVec3::new(0.0, 0.0, 3.0), 0.5, 2));
     let ball = "[[surfaces]]\nmesh = \"ball.ply\"\nfront = \"air\"\nback = \"ball\"\nmaterial = { kind = \"dielectric\" }\n";
-    let hg = PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 });
+    let hg = MediumPhase::One(PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
     let phase = |milk: &str, ball_medium: &str, similarity: u32| {
         let scene = folder.scene(&format!(
             "[media.milk]\n{milk}\n[media.ball]\n{ball_medium}\n{ball}{LAYER}{ABOVE}resolution = [4, 4]\n\
@@ -156,11 +156,11 @@ fn only_thick_media_that_scatter_forward_are_reduced() {
     // The layer's least edge is 1 m and the ball's 1 m: reduced optical sizes of 100 and 0.1.
     assert_eq!(phase(&forward(1000), &forward(1), 0), (is_off(1000.0), is_off(1.0), false));
     let (milk, thin, reported) = phase(&forward(1000), &forward(1), 1);
-    assert_eq!((milk.0, thin, reported), (PhaseFunction::Isotropic(Isotropic), is_off(1.0), true));
+    assert_eq!((milk.0, thin, reported), (PhaseFunction::Isotropic(Isotropic).into(), is_off(1.0), true));
     assert!((milk.1 - 100.0).abs() < 0.01, "{}", milk.1);
     let (milk, ball, _) = phase(&forward(1), &forward(1000), 3);
     assert_eq!(milk, is_off(1.0));
-    assert!(matches!(ball.0, PhaseFunction::Tabulated(_)) && ball.1 < 500.0);
+    assert!(matches!(ball.0, MediumPhase::One(PhaseFunction::Tabulated(_))) && ball.1 < 500.0);
     let (rayleigh, _, reported) = phase("scattering = 1000\nphase = { kind = \"rayleigh\" }", &forward(1), 4);
     assert_eq!((rayleigh.1, reported), (1000.0, false));
     let (varied, _, reported) = phase(&(forward(1000) + "\ndensity = { stratified = 3 }"), &forward(1), 1);

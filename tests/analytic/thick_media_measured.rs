@@ -3,8 +3,7 @@
 //! `cargo test --release --test analytic thick_media_measured -- --ignored --nocapture --test-threads 1`
 
 use floe::film::estimate_error;
-use floe::optics::similarity::Reduction;
-use floe::spectrum::LaneCurve;
+use floe::optics::medium_reduction::MediumReduction;
 use glam::DVec3;
 
 use super::led_walks::{EVEN, Layer, PICTURE, folder, lead};
@@ -30,10 +29,12 @@ fn timed(scene: &Prepared, samples: u32, seed: u64) -> (Rendered, f64) {
 /// Replaces the scattering of a medium by what is similar of an order, however thin it is.
 fn reduce(scene: &mut Prepared, name: &str, order: usize) -> f64 {
     let Some(medium) = scene.frame.media.iter_mut().find(|m| m.name == name) else { panic!("no {name}") };
-    let Some(Reduction { alpha, phase }) = Reduction::of(&medium.phase, order) else { return 1.0 };
+    let Some(MediumReduction { alpha, phase }) = MediumReduction::of(&medium.phase, order) else {
+        return 1.0;
+    };
     medium.phase = phase;
-    medium.sigma_s = medium.sigma_s.combined(&LaneCurve::Constant(alpha as f32), |s, a| s * a);
-    alpha
+    medium.sigma_s = medium.sigma_s.combined(&alpha, |s, a| s * a);
+    f64::from(alpha.maximum())
 }
 
 /// Mean over the directions of a view along the normal of so many degrees, weighted with their cosine, and its standard

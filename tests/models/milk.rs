@@ -8,8 +8,8 @@ fn milk(fat: f64, pressure: Option<f64>) -> Milk {
     Milk { fat, pressure, ..PRESETS[0].1 }
 }
 
-/// The rule of the reference has steps of 50 nm, too coarse for the small globules of milk with 1.5 % of fat that is homogenised: it is
-/// off by 3.2e-3 at most there, which [`homogenised_milk_is_that_of_a_fine_rule`] shows.
+/// The rule of the reference has steps of 50 nm, too coarse for the small globules of milk with 1.5 % of fat that is
+/// homogenised: it is off by 3.2e-3 at most there, which [`homogenised_milk_is_that_of_a_fine_rule`] shows.
 #[test]
 fn milk_is_that_of_the_reference() {
     let mut worst = [0.0_f64; 2];
@@ -41,8 +41,9 @@ fn homogenised_milk_is_that_of_a_fine_rule() {
     }
 }
 
-/// Narasimhan et al. measured regular milk diluted, by its reduced scattering sigma_s (1 - g), in 1/mm. What we compute has 8 to
-/// 16 % less with globules homogenised at 20 MPa, 20 to 25 % less with the default ones: how theirs was homogenised is not known.
+/// Narasimhan et al. measured regular milk diluted, by its reduced scattering sigma_s (1 - g), in 1/mm. What we compute
+/// has 8 to 16 % less with globules homogenised at 20 MPa, 20 to 25 % less with the default ones: how theirs was
+/// homogenised is not known.
 #[test]
 fn milk_is_nearly_that_of_the_measurements() {
     let measured = [(650.0, 4.55), (550.0, 5.83), (450.0, 7.14)];

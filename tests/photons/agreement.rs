@@ -134,6 +134,21 @@ fn a_sky_of_photons_and_everything_else() {
     compare(&folder, text, &settings, 0.03, [48, 512]);
 }
 
+/// Lobes from backward ones to narrow peaks: some lanes of a pass take an angle for part of a peak, others do not.
+#[test]
+fn phase_functions_that_differ_from_wavelength_to_wavelength() {
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("lamp.ply", &lamp())
+        .mesh("cube.ply", &cuboid(DVec3::new(-0.5, -0.5, 0.1), DVec3::new(0.4, 0.3, 0.7)));
+    let text = "[media.milk]\nior = 1.2\nabsorption = 0.2\n\
+                scattering = { wavelength = [400, 700], value = [5, 2] }\n\
+                phase = { kind = \"henyey-greenstein\", g = { wavelength = [450, 600], value = [-0.4, 0.9] } }\n\
+                [[surfaces]]\nmesh = \"cube.ply\"\nfront = \"air\"\nback = \"milk\"\nnormals = \"flat\"\n\
+                material = { kind = \"dielectric\" }\n";
+    compare(&folder, text, &[("phases over wavelength", "")], 0.03, [48, 512]);
+}
+
 /// A lamp that stands in water, half in it and half in the air: no medium is that of all of it. A quarter of the light
 /// below was lost where chance's weight counted an estimate that was not made.
 #[test]

@@ -20,7 +20,7 @@ fn along(mu: f32) -> Reflection {
         sigma_a: LaneCurve::Rgb(Lanes::new(0.0, 0.01, 0.5, 1.0)),
         sigma_s: LaneCurve::Rgb(sigma_s / (1.0 - g)),
         emission: LaneCurve::Constant(0.0),
-        phase: PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g }),
+        phase: PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g }).into(),
         density: Density::Homogeneous,
     };
     HalfSpace::of(&medium).lanes(&Wavelengths::RGB).along(mu)

@@ -18,7 +18,7 @@ const COLUMNS: usize = 12;
 const LEAST: f64 = 1e-11;
 
 /// The two ends of the sphere that angles are counted from.
-const ENDS: [fn(f32) -> Deflection; 2] = [Deflection::from_one_minus_cos, Deflection::from_one_plus_cos];
+pub const ENDS: [fn(f32) -> Deflection; 2] = [Deflection::from_one_minus_cos, Deflection::from_one_plus_cos];
 
 /// Upper edge of a row in 1 - cos or 1 + cos; 90 degrees is the last.
 fn edge(row: usize) -> f64 {
@@ -40,12 +40,12 @@ fn ring(end: usize, from: f64, to: f64, steps: u32, function: impl Fn(Deflection
 }
 
 /// Integral over the sphere.
-fn integral(function: impl Fn(Deflection) -> f64) -> f64 {
+pub fn integral(function: impl Fn(Deflection) -> f64) -> f64 {
     (0..2).map(|end| ring(end, 0.0, 1.0, 120_000, &function)).sum()
 }
 
 /// The cosine in f64.
-fn cosine(d: Deflection) -> f64 {
+pub fn cosine(d: Deflection) -> f64 {
     0.5 * (f64::from(d.one_plus_cos()) - f64::from(d.one_minus_cos()))
 }
 
@@ -119,34 +119,45 @@ fn henyey_greenstein_keeps_its_peak_in_single_precision() {
     }
 }
 
-#[test]
-fn samples_follow_the_phase_function() {
+/// Panics unless directions drawn around `forward` follow a density.
+pub fn assert_follows(
+    name: &str,
+    seed: u64,
+    density: impl Fn(Deflection) -> f64,
+    sample: impl Fn(Vec3, [f32; 2]) -> Vec3,
+) {
     let forward = Vec3::new(0.3, -0.8, 0.52).normalize();
     let basis = floe::geometry::Frame::around(forward);
-    for (seed, (name, phase)) in (100..).zip(EXAMPLES.iter()) {
-        // Samples follow the density; their weights make the value of it.
-        let density = |end: usize, row: usize| {
-            let from = if row == 0 { 0.0 } else { edge(row - 1) };
-            ring(end, from, edge(row), 4000, |d| f64::from(phase.pdf_w(d)))
+    let share = |end: usize, row: usize| {
+        let from = if row == 0 { 0.0 } else { edge(row - 1) };
+        ring(end, from, edge(row), 4000, &density)
+    };
+    let rows: Vec<f64> = (0..2 * ROWS).map(|r| share(r / ROWS, r % ROWS)).collect();
+    let total: f64 = rows.iter().sum();
+    assert!((total - 1.0).abs() < 1e-5, "{name}: the density integrates to {total}");
+    let cells: Vec<f64> =
+        rows.iter().flat_map(|p| std::iter::repeat_n(p / total / COLUMNS as f64, COLUMNS)).collect();
+    assert_fits(name, seed, &cells, |u| {
+        let wi = sample(forward, u);
+        let d = basis.to_local(wi);
+        let turned = Deflection::between(forward, wi);
+        let (end, t) = if turned.one_minus_cos() <= turned.one_plus_cos() {
+            (0, f64::from(turned.one_minus_cos()))
+        } else {
+            (1, f64::from(turned.one_plus_cos()))
         };
-        let rows: Vec<f64> = (0..2 * ROWS).map(|r| density(r / ROWS, r % ROWS)).collect();
-        let total: f64 = rows.iter().sum();
-        assert!((total - 1.0).abs() < 1e-5, "{name}: the density integrates to {total}");
-        let cells: Vec<f64> =
-            rows.iter().flat_map(|p| std::iter::repeat_n(p / total / COLUMNS as f64, COLUMNS)).collect();
-        assert_fits(name, seed, &cells, |u| {
-            let sample = phase.sample(forward, u);
-            let d = basis.to_local(sample.wi);
-            let turned = Deflection::between(forward, sample.wi);
-            let (end, t) = if turned.one_minus_cos() <= turned.one_plus_cos() {
-                (0, f64::from(turned.one_minus_cos()))
-            } else {
-                (1, f64::from(turned.one_plus_cos()))
-            };
-            let row = if t < LEAST { 0 } else { 1 + cell_of(1.0 - t.ln() / LEAST.ln(), ROWS - 1) };
-            let turn = (f64::from(d.y).atan2(f64::from(d.x)) / (2.0 * PI)).rem_euclid(1.0);
-            (end * ROWS + row) * COLUMNS + cell_of(turn, COLUMNS)
-        });
+        let row = if t < LEAST { 0 } else { 1 + cell_of(1.0 - t.ln() / LEAST.ln(), ROWS - 1) };
+        let turn = (f64::from(d.y).atan2(f64::from(d.x)) / (2.0 * PI)).rem_euclid(1.0);
+        (end * ROWS + row) * COLUMNS + cell_of(turn, COLUMNS)
+    });
+}
+
+/// Samples follow the density; their weights make the value of it.
+#[test]
+fn samples_follow_the_phase_function() {
+    for (seed, (name, phase)) in (100..).zip(EXAMPLES.iter()) {
+        let density = |d| f64::from(phase.pdf_w(d));
+        assert_follows(name, seed, density, |forward, u| phase.sample(forward, u).wi);
     }
 }
 
@@ -177,24 +188,24 @@ fn the_mean_cosine_of_samples_has_the_sign_of_g() {
 
 /// Running mean with its standard error.
 #[derive(Default)]
-struct Mean {
+pub struct Mean {
     sum: f64,
     squares: f64,
     count: f64,
 }
 
 impl Mean {
-    fn add(&mut self, x: f64) {
+    pub fn add(&mut self, x: f64) {
         self.sum += x;
         self.squares += x * x;
         self.count += 1.0;
     }
 
-    fn mean(&self) -> f64 {
+    pub fn mean(&self) -> f64 {
         self.sum / self.count
     }
 
-    fn error(&self) -> f64 {
+    pub fn error(&self) -> f64 {
         ((self.squares / self.count - self.mean() * self.mean()).max(0.0) / self.count).sqrt()
     }
 }

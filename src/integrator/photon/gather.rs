@@ -66,6 +66,7 @@ impl Sample<'_> {
         }
         let medium = self.scratch.media[branch.medium.0 as usize];
         let described = self.frame.medium(branch.medium);
+        let phase = described.phase.at(self.wavelengths);
         let geometry = &self.frame.geometry;
         let is_start = |&triangle: &u32| triangle != u32::MAX && !self.is_hidden(branch, triangle);
         let start = Some(branch.leaves).filter(is_start);
@@ -82,8 +83,8 @@ impl Sample<'_> {
             let t_max = (along + before.dot(beside)).clamp(0.0, ray.t_max);
             let length = described.density.length(&Ray { t_max, ..*ray });
             let towards_eye = Deflection::between(photon.direction, -ray.direction);
-            let value = described.phase.value(towards_eye);
-            if is_peak(value) && (photon.scattered || !branch.arrival.specular_from_eye) {
+            let value = phase.value(towards_eye);
+            if is_peak(value.max_element()) && (photon.scattered || !branch.arrival.specular_from_eye) {
                 return;
             }
             sum += photon.flux * medium.transmittance(length) * (value * kernel(pass, squared, reach));

@@ -164,7 +164,7 @@ impl PhotonFrame {
             guide: settings.guide,
             lookups: self.lookups,
             walks: self.walks,
-            peaked: frame.media.iter().map(|medium| has_peak(&medium.phase)).collect(),
+            peaked: frame.media.iter().map(|medium| has_peak(&medium.phase.at(&common.0))).collect(),
             sky: self.sky,
         };
         Some((pass, arrivals.counters))

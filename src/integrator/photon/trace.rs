@@ -375,13 +375,14 @@ impl Walk<'_> {
         if self.sample.is_spent(branch) {
             return Fate::Ends;
         }
-        let turned = self.tracing.frame.medium(branch.medium).phase.sample(branch.direction, [u[1], u[2]]);
+        let phase = self.tracing.frame.medium(branch.medium).phase.at(self.tracing.wavelengths);
+        let turned = phase.sample(branch.direction, [u[1], u[2]], branch.throughput);
         branch.throughput *= turned.weight;
         branch.origin = point;
         branch.direction = turned.wi;
         branch.leaves = u32::MAX;
         (branch.bounces, branch.steps) = (0, 0);
-        if is_peak(turned.weight * turned.pdf_w) {
+        if is_peak(turned.greatest) {
             flying.turned_narrowly();
         } else {
             flying.history = History::Scattered;

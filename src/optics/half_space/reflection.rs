@@ -52,9 +52,8 @@ pub struct Reflection {
 impl HalfSpace {
     /// What is similar to a medium and scatters isotropically.
     pub fn of(medium: &Medium) -> Self {
-        let evenly = 1.0 - medium.phase.mean_cosine();
-        let rest = |s: f32, a: f32| if s > 0.0 { (a / (a + s * evenly)).sqrt() } else { 1.0 };
-        Self { rest: medium.sigma_s.combined(&medium.sigma_a, rest) }
+        let rest = |s: f32, a: f32| if s > 0.0 { (a / (a + s)).sqrt() } else { 1.0 };
+        Self { rest: medium.reduced_scattering().combined(&medium.sigma_a, rest) }
     }
 
     /// At the wavelengths of a path.

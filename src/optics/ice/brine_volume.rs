@@ -36,8 +36,8 @@ pub struct IceContents {
 pub enum IceError {
     /// Denser than ice and brine without any air.
     #[error(
-        "ice of {density} kg/m^3 at {temperature} degrees and {salinity} parts per thousand would have less than no air ({air:.3e} of its volume): \
-         it has none at {densest:.3} kg/m^3; write at most that"
+        "ice of {density} kg/m^3 at {temperature} degrees and {salinity} parts per thousand would have less than no air \
+         ({air:.3e} of its volume): it has none at {densest:.3} kg/m^3; write at most that"
     )]
     TooDense {
         /// kg/m^3.
@@ -53,8 +53,8 @@ pub enum IceError {
     },
     /// More brine than there is room for.
     #[error(
-        "ice of {salinity} parts per thousand and {density} kg/m^3 at {temperature} degrees would be brine for {brine:.3} and air for {air:.3} of its \
-         volume: nothing of it is frozen; write a lower temperature or salinity"
+        "ice of {salinity} parts per thousand and {density} kg/m^3 at {temperature} degrees would be brine for {brine:.3} \
+         and air for {air:.3} of its volume: nothing of it is frozen; write a lower temperature or salinity"
     )]
     Melted {
         /// Parts per thousand.

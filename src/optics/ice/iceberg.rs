@@ -1,7 +1,7 @@
 //! Icebergs: ice with the air and the brine that its temperature, salinity and density say, and algae where it lies in the sea.
 //!
-//! The host is pure ice `[WARREN08]`. [`PRESETS`] go by the air in it and are **ours and unverified**; without salt at -15 degrees
-//! they have
+//! The host is pure ice `[WARREN08]`. [`PRESETS`] go by the air in it and are **ours and unverified**; without salt at
+//! -15 degrees they have
 //!
 //! | preset | air | kg/m^3 | what it stands for |
 //! |---|---|---|---|

@@ -5,10 +5,10 @@
 //! brine:  N(l) ~ l^-1.96,  l from 0.01 to 8 mm, cylinders with l / d = 1 up to 0.03 mm, 10.3 l^0.67 above     (1)
 //! n_brine = 1.341 at -2 to 1.397 at -32 degrees, linear in between                                           (2)
 //! ```
-//! (1), l in mm there, and the bubbles are the sizes that `[LIGHT03]` found in sea ice off Alaska, (2) is `[MAYKUT95]`. **All of
-//! this is from memory and unverified**: no source was opened. The cylinders are stood in for by spheres of the same volume to
-//! area `[GRENFELL99]`. Over wavelength the index of brine falls as that of sea water does, and it absorbs as pure
-//! water does.
+//! (1), l in mm there, and the bubbles are the sizes that `[LIGHT03]` found in sea ice off Alaska, (2) is `[MAYKUT95]`.
+//! **All of this is from memory and unverified**: no source was opened. The cylinders are stood in for by spheres of
+//! the same volume to area `[GRENFELL99]`. Over wavelength the index of brine falls as that of sea water does, and it
+//! absorbs as pure water does.
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Pure ice, and ice with air and brine in it.
 //!
-//! [`index`](self::refractive_index()) is ice itself; [`iceberg`] adds what it encloses.
+//! [`refractive_index`] and [`absorption`](self::absorption()) are ice itself; [`iceberg`] adds what it encloses.
 
 mod brine_volume;
 pub mod iceberg;

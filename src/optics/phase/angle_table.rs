@@ -76,6 +76,11 @@ impl AngleTable {
         self.mean_cosine
     }
 
+    /// Nodes and densities of both hemispheres, each from its own pole.
+    pub fn nodes(&self) -> [(&[f32], &[f32]); 2] {
+        [&self.forward, &self.backward].map(|side| (side.t.as_slice(), side.density.as_slice()))
+    }
+
     /// Density per solid angle.
     pub fn pdf_w(&self, deflection: Deflection) -> f32 {
         if deflection.one_minus_cos() <= deflection.one_plus_cos() {
@@ -119,9 +124,7 @@ impl Hemisphere {
     }
 
     fn density_at(&self, t: f32) -> f32 {
-        let i = self.t.partition_point(|&node| node <= t).clamp(1, self.t.len() - 1) - 1;
-        let (t0, t1) = (self.t[i], self.t[i + 1]);
-        let s = ((t - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        let (i, s) = cell_at(&self.t, t);
         self.density[i] + (self.density[i + 1] - self.density[i]) * s
     }
 
@@ -142,6 +145,14 @@ impl Hemisphere {
         let d = 2.0 * rest / (p0 + root).max(f32::MIN_POSITIVE);
         t0 + d.min(width)
     }
+}
+
+/// The cell of rising nodes that holds `t`, and how far it lies in it.
+#[inline]
+pub(super) fn cell_at(nodes: &[f32], t: f32) -> (usize, f32) {
+    let i = nodes.partition_point(|&node| node <= t).clamp(1, nodes.len() - 1) - 1;
+    let (t0, t1) = (nodes[i], nodes[i + 1]);
+    (i, ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
 }
 
 /// The cell whose share begins at or below `share`; cells of no share are stepped over.

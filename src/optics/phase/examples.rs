@@ -5,9 +5,10 @@ use std::sync::LazyLock;
 
 use super::{
     Atmosphere, CornetteShanks, DiffuseSpheres, Draine, FournierForand, Gaussian, HenyeyGreenstein,
-    Isotropic, LinearAnisotropic, PhaseFunction, Rayleigh, Sakas, Schlick, SpecularSpheres, Tabulated,
-    TwoTermHenyeyGreenstein, TwoTermSchlick,
+    Isotropic, LinearAnisotropic, PhaseFunction, Rayleigh, Sakas, Schlick, SpectralPhase, SpecularSpheres,
+    Tabulated, TwoTermHenyeyGreenstein, TwoTermSchlick,
 };
+use crate::spectrum::Spectrum;
 
 /// Phase functions with their names.
 pub type Examples = Vec<(&'static str, PhaseFunction)>;
@@ -17,6 +18,29 @@ pub static EXAMPLES: LazyLock<Examples> = LazyLock::new(|| {
     let mut examples = closed_forms();
     examples.extend(with_tables().into_iter().filter_map(|(name, phase)| Some((name, phase?))));
     examples
+});
+
+/// Phase functions over wavelength: those that differ little, much, and in where they vanish.
+pub static SPECTRAL_EXAMPLES: LazyLock<Vec<(&'static str, SpectralPhase)>> = LazyLock::new(|| {
+    let hg = |wavelengths: &[f32], values: &[f32]| {
+        let (wavelengths, values) = (wavelengths.to_vec(), values.to_vec());
+        SpectralPhase::henyey_greenstein(Spectrum::Table { wavelengths, values })
+    };
+    let steps = [0.3, 1.0, 2.0, 3.0];
+    let stepped = [[4.0, 0.0, 0.0, 1.0], [0.0, 1.0, 2.0, 0.0], [1.0; 4]].map(Vec::from);
+    let (angles, peak) = peaked();
+    // Ever wider, with an ever weaker glory.
+    let peaks: Vec<Vec<f64>> =
+        (1..=4).map(|k| peak.iter().map(|p| libm::pow(*p, 1.0 / f64::from(k))).collect()).collect();
+    let all = [
+        ("henyey-greenstein 0.8 to 0.85", hg(&[400.0, 700.0], &[0.85, 0.8])),
+        ("henyey-greenstein -0.6 to 0.95", hg(&[400.0, 550.0, 700.0], &[-0.6, 0.95, 0.0])),
+        ("henyey-greenstein 0 or 0.9999", hg(&[549.0, 551.0], &[0.0, 0.9999])),
+        ("one table", SpectralPhase::tabulated(&[550.0], &steps, &stepped[..1])),
+        ("tables with holes", SpectralPhase::tabulated(&[450.0, 550.0, 650.0], &steps, &stepped)),
+        ("tables of peaks", SpectralPhase::tabulated(&[430.0, 500.0, 610.0, 680.0], &angles, &peaks)),
+    ];
+    all.into_iter().filter_map(|(name, phase)| Some((name, phase?))).collect()
 });
 
 fn closed_forms() -> Examples {
@@ -77,12 +101,15 @@ fn with_tables() -> Vec<(&'static str, Option<PhaseFunction>)> {
             "tabulated steps",
             Tabulated::new(&[0.3, 1.0, 2.0, 3.0], &[4.0, 0.0, 0.0, 1.0]).map(PhaseFunction::Tabulated),
         ),
-        ("tabulated peak", peak().map(PhaseFunction::Tabulated)),
+        ("tabulated peak", {
+            let (angles, values) = peaked();
+            Tabulated::new(&angles, &values).map(PhaseFunction::Tabulated)
+        }),
     ]
 }
 
 /// Angles even in their logarithm; 1e6 times its mean at 0, a glory of 30 times at 180 degrees.
-fn peak() -> Option<Tabulated> {
+fn peaked() -> (Vec<f64>, Vec<f64>) {
     let steps: Vec<f64> =
         (0..=240).map(|i| 1e-5 * libm::pow(0.5 * PI / 1e-5, f64::from(i) / 240.0)).collect();
     let ahead = std::iter::once(0.0).chain(steps.iter().copied());
@@ -93,6 +120,6 @@ fn peak() -> Option<Tabulated> {
         let glory = 30.0 / (1.0 + (PI - angle) * (PI - angle) / 1e-4);
         peak + glory + 0.2
     };
-    let values: Vec<f64> = angles.iter().map(|a| value(*a)).collect();
-    Tabulated::new(&angles, &values)
+    let values = angles.iter().map(|a| value(*a)).collect();
+    (angles, values)
 }

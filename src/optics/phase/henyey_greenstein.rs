@@ -11,6 +11,7 @@ use std::f32::consts::FRAC_1_PI;
 use super::Lobe;
 use super::deflection::Deflection;
 use crate::geometry::machine::Lanes;
+use crate::spectrum;
 
 /// The Henyey-Greenstein phase function.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,19 @@ impl Lobe for HenyeyGreenstein {
     fn mean_cosine(&self) -> f32 {
         self.g
     }
+}
+
+/// Values at the g of each lane.
+#[inline]
+pub(super) fn on_lanes(g: spectrum::Lanes, turned: Deflection) -> spectrum::Lanes {
+    use spectrum::Lanes;
+    let [ahead, back] = [turned.one_minus_cos(), turned.one_plus_cos()].map(Lanes::splat);
+    let from_peak = Lanes::select(g.cmpge(Lanes::ZERO), ahead, back);
+    let g = g.abs();
+    let rest = Lanes::ONE - g;
+    let squared = rest * rest + 2.0 * g * from_peak;
+    let root = Lanes::from_array(squared.to_array().map(f32::sqrt));
+    0.25 * FRAC_1_PI * rest * (Lanes::ONE + g) / (squared * root)
 }
 
 impl HenyeyGreenstein {

@@ -4,6 +4,8 @@
 //! *travel* before and after. One file a function; [`EXAMPLES`] is the list that tests walk. Most are sampled exactly
 //! by their inverted cumulative distribution. Those that have none in closed form are sampled through a table of their
 //! values, and the samples' weight, value over density, makes good what is lost between its nodes.
+//!
+//! A medium has one of them, or one over wavelength ([`MediumPhase`]).
 
 mod angle_table;
 mod atmosphere;
@@ -18,9 +20,11 @@ mod henyey_greenstein;
 mod isotropic;
 mod legendre;
 mod linear_anisotropic;
+mod medium_phase;
 mod rayleigh;
 mod sakas;
 mod schlick;
+mod spectral;
 mod specular_spheres;
 mod tabulated;
 mod two_term_henyey_greenstein;
@@ -34,16 +38,18 @@ pub use cornette_shanks::CornetteShanks;
 pub use deflection::Deflection;
 pub use diffuse_spheres::DiffuseSpheres;
 pub use draine::Draine;
-pub use examples::{EXAMPLES, Examples};
+pub use examples::{EXAMPLES, Examples, SPECTRAL_EXAMPLES};
 pub use fournier_forand::FournierForand;
 pub use gaussian::Gaussian;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
 pub use legendre::legendre;
 pub use linear_anisotropic::LinearAnisotropic;
+pub use medium_phase::{LanesSample, MediumPhase, PhaseLanes};
 pub use rayleigh::Rayleigh;
 pub use sakas::Sakas;
 pub use schlick::Schlick;
+pub use spectral::{SpectralLanes, SpectralPhase};
 pub use specular_spheres::SpecularSpheres;
 pub use tabulated::Tabulated;
 pub use two_term_henyey_greenstein::TwoTermHenyeyGreenstein;

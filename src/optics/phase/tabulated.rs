@@ -32,6 +32,11 @@ impl Tabulated {
         let table = AngleTable::new([hemisphere(ahead), hemisphere(back)])?;
         Some(Self { table: Arc::new(table) })
     }
+
+    /// As [`AngleTable::nodes`].
+    pub(super) fn nodes(&self) -> [(&[f32], &[f32]); 2] {
+        self.table.nodes()
+    }
 }
 
 impl Lobe for Tabulated {

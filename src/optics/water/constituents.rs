@@ -5,10 +5,11 @@
 //! algae:      n = 1.41,  N(r) ~ r^-3.6,  r from 0.225 to 100 um
 //! rock flour: n = 1.55,  N(r) ~ r^-3.4,  r from 0.01 to 4 um
 //! ```
-//! Minerals and algae are those of `[FRISVAD07]`, at second hand: the figures were read in a program, and their constants of
-//! normalisation confirm the radii. k of minerals falls as exp(-0.0123 (lambda - 375)) / lambda does, as that of sediments at sea
-//! `[BABIN03]`. The k of algae that was read has 2.53e-2 at 675 nm, between neighbours of 1.0e-4 and 3.9e-5: it is taken as
-//! 2.53e-4, which is not confirmed. Beyond 700 nm k of algae is a guess of its source.
+//! Minerals and algae are those of `[FRISVAD07]`, at second hand: the figures were read in a program, and their
+//! constants of normalisation confirm the radii. k of minerals falls as exp(-0.0123 (lambda - 375)) / lambda does, as
+//! that of sediments at sea `[BABIN03]`. The k of algae that was read has 2.53e-2 at 675 nm, between neighbours of
+//! 1.0e-4 and 3.9e-5: it is taken as 2.53e-4, which is not confirmed. Beyond 700 nm k of algae is a guess of its
+//! source.
 //!
 //! Rock flour is ours and unverified: what glaciers grind is quartz and feldspar, so its index is lower and its k a tenth of
 //! that of sediments, and what stays afloat in lakes is of clay size, 4 um at most `[HODDER07]`.

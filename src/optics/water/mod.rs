@@ -1,6 +1,7 @@
 //! Pure water, sea water, and what natural waters carry.
 //!
-//! [`index`] and [`absorption`](self::absorption()) are water itself; [`natural`] adds what is suspended and dissolved in it.
+//! [`refractive_index`] and [`absorption`](self::absorption()) are water itself; [`natural`] adds what is suspended and
+//! dissolved in it.
 
 mod absorption;
 mod constituents;

@@ -1,5 +1,5 @@
-//! Natural waters: what they are made of, and five seas and a lake ready to use `[FRISVAD07]`, `[IRWIN78]`, beside Jerlov's types
-//! `[AUSTIN84]`, `[JERLOV76]`.
+//! Natural waters: what they are made of, and five seas and a lake ready to use `[FRISVAD07]`, `[IRWIN78]`, beside
+//! Jerlov's types `[AUSTIN84]`, `[JERLOV76]`.
 #![doc = include_str!("natural.md")]
 
 use super::super::RefractiveIndex;

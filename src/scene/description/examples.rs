@@ -264,6 +264,14 @@ glow = { scattering = 1, phase = { kind = "gaussian", gamma = 10 } }
 ocean = { scattering = 1, phase = { kind = "fournier-forand", ior = 1.1, mu = 3.5835 } }
 coast = { scattering = 1, phase = { kind = "fournier-forand", backscatter = 0.0183 } }
 measured = { scattering = 1, phase = { kind = "tabulated", angle = [0, 10, 90, 180], value = [1e6, 30, 1, 2] } }
+
+[media.plankton]
+scattering = 1
+phase = { kind = "henyey-greenstein", g = { wavelength = [400, 700], value = [0.96, 0.92] } }
+
+[media.colloid]
+scattering = 1
+phase = { kind = "tabulated", wavelength = [450, 650], angle = [0, 90, 180], value = [[9, 1, 2], [2, 1, 2]] }
 "#;
 
 const TURBID: &str = r#"

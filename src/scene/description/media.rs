@@ -133,7 +133,7 @@ impl Default for MediumDescription {
             scattering: Spectrum::Constant(0.0),
             extinction: None,
             emission: Spectrum::Constant(0.0),
-            phase: PhaseFunction::Isotropic(Isotropic),
+            phase: PhaseFunction::Isotropic(Isotropic).into(),
             density: DensityDescription::Homogeneous,
             model: None,
         }

@@ -28,6 +28,7 @@ mod render;
 mod scene;
 mod settings;
 mod sky;
+mod spectral_phase;
 mod spectrum_value;
 mod sun;
 mod surfaces;
@@ -49,7 +50,7 @@ use glam::{DVec3, Vec3};
 
 use crate::mesh::Region;
 use crate::optics::RefractiveIndex;
-use crate::optics::phase::PhaseFunction;
+use crate::optics::phase::MediumPhase;
 use crate::spectrum::Spectrum;
 
 /// Everything that a scene file says.
@@ -194,7 +195,7 @@ pub struct MediumDescription {
     /// Radiance of an endless depth, seen from a medium of index 1 (0).
     pub emission: Spectrum,
     /// Phase function of the scattering.
-    pub phase: PhaseFunction,
+    pub phase: MediumPhase,
     /// Where the medium is how dense.
     pub density: DensityDescription,
     /// What takes the place of index, coefficients and phase function.

@@ -3,6 +3,7 @@
 use super::allowed::Allowed;
 use super::document::Table;
 use super::error::SceneError;
+use super::spectral_phase;
 use super::value::Value;
 use crate::optics::phase::*;
 
@@ -32,17 +33,20 @@ const KINDS: [(&str, Reader); 17] = [
 ];
 
 /// Reads a phase function.
-pub(super) fn read(value: &Value<'_>) -> Result<PhaseFunction, SceneError> {
+pub(super) fn read(value: &Value<'_>) -> Result<MediumPhase, SceneError> {
     let table = value.table(FORMS)?;
     let kind = table.require("kind", &format!("write {FORMS}"))?;
     let reader = kind.choice(&KINDS)?;
-    let phase = reader(&table, value)?;
+    let phase = match spectral_phase::read(kind.text("a kind")?, &table, value)? {
+        Some(spectral) => spectral.into(),
+        None => reader(&table, value)?.into(),
+    };
     table.finish()?;
     Ok(phase)
 }
 
 /// What was made of parameters that are each in their range; together they may still make nothing.
-fn made(value: &Value<'_>, phase: Option<PhaseFunction>) -> Result<PhaseFunction, SceneError> {
+pub(super) fn made<T>(value: &Value<'_>, phase: Option<T>) -> Result<T, SceneError> {
     phase.ok_or_else(|| value.invalid("these parameters leave no light to scatter: change them"))
 }
 
@@ -156,6 +160,13 @@ fn fournier_forand(table: &Table<'_>, value: &Value<'_>) -> Result<PhaseFunction
 }
 
 fn tabulated(table: &Table<'_>, value: &Value<'_>) -> Result<PhaseFunction, SceneError> {
+    let angles = angles(table)?;
+    let values = table.require("value", "write one number for each angle, in any unit")?;
+    made(value, Tabulated::new(&angles, &numbers(&values, angles.len())?).map(PhaseFunction::Tabulated))
+}
+
+/// `angle = [..]` in degrees, strictly rising; in radians.
+pub(super) fn angles(table: &Table<'_>) -> Result<Vec<f64>, SceneError> {
     const FORM: &str = "rising angles in degrees, such as angle = [0, 1, 5, 20, 90, 180]";
     let mut angles: Vec<f64> = Vec::new();
     for element in table.require("angle", &format!("write {FORM}"))?.elements(FORM)? {
@@ -165,13 +176,15 @@ fn tabulated(table: &Table<'_>, value: &Value<'_>) -> Result<PhaseFunction, Scen
         }
         angles.push(angle.min(std::f64::consts::PI));
     }
-    let values = table.require("value", "write one number for each angle, in any unit")?;
+    Ok(angles)
+}
+
+/// One number for each angle.
+pub(super) fn numbers(values: &Value<'_>, count: usize) -> Result<Vec<f64>, SceneError> {
     let numbers = values.elements("one number for each angle")?;
-    if numbers.len() != angles.len() || numbers.is_empty() {
-        let (found, count) = (numbers.len(), angles.len());
+    if numbers.len() != count || numbers.is_empty() {
+        let found = numbers.len();
         return Err(values.invalid(format!("{found} numbers for {count} angles: write one for each")));
     }
-    let numbers: Vec<f64> =
-        numbers.iter().map(|v| v.number(&Allowed::NOT_NEGATIVE)).collect::<Result<_, _>>()?;
-    made(value, Tabulated::new(&angles, &numbers).map(PhaseFunction::Tabulated))
+    numbers.iter().map(|v| v.number(&Allowed::NOT_NEGATIVE)).collect()
 }

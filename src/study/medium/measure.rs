@@ -135,7 +135,7 @@ fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk 
         n: wavelengths.iter().map(|lambda| index.n(*lambda)).collect(),
         sigma_a: over(&medium.sigma_a),
         sigma_s: over(&medium.sigma_s),
-        g: vec![f64::from(medium.phase.mean_cosine()); wavelengths.len()],
+        g: over(&medium.phase.mean_cosine()),
         species: Vec::new(),
         relative_error: 0.0,
     }

@@ -3,16 +3,23 @@
 use std::f64::consts::PI;
 
 use crate::optics::particles::EnsemblePhase;
-use crate::optics::phase::{Deflection, PhaseFunction};
+use crate::optics::phase::{Deflection, MediumPhase};
+use crate::spectrum::Wavelengths;
 
 /// Angles for a phase function that is given as a formula, to either side of pi / 2: even in their logarithm.
 const STEPS: u32 = 480;
 /// The least of them but 0, in radians.
 const LEAST: f64 = 1e-4;
 
-/// A phase function that is the same at all wavelengths.
-pub(super) fn tabulated(phase: &PhaseFunction) -> EnsemblePhase {
-    sampled(vec![550.0], |_, deflection| f64::from(phase.value(deflection)))
+/// A phase function that a medium is given with: at one wavelength where it is the same at all.
+pub(super) fn tabulated(phase: &MediumPhase) -> EnsemblePhase {
+    let wavelengths: Vec<f64> = match phase {
+        MediumPhase::One(_) => vec![550.0],
+        MediumPhase::Spectral(_) => (380..=780).step_by(20).map(f64::from).collect(),
+    };
+    let path = |lambda: &f64| Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
+    let paths: Vec<Wavelengths> = wavelengths.iter().map(path).collect();
+    sampled(wavelengths, |i, deflection| f64::from(phase.at(&paths[i]).value(deflection).x))
 }
 
 /// One lobe of Henyey and Greenstein's of its mean cosine g at each wavelength.
@@ -61,7 +68,8 @@ pub(super) fn json(phase: &EnsemblePhase) -> serde_json::Value {
 mod tests {
     use super::*;
     use crate::optics::apparent::backscattered_share;
-    use crate::optics::phase::{HenyeyGreenstein, Isotropic};
+    use crate::optics::phase::{HenyeyGreenstein, Isotropic, PhaseFunction, SpectralPhase};
+    use crate::spectrum::Spectrum;
 
     fn integral(phase: &EnsemblePhase, i: usize) -> f64 {
         // Linear in the cosine.
@@ -71,18 +79,22 @@ mod tests {
 
     #[test]
     fn formulas_are_tabulated_finely_enough() {
-        let even = tabulated(&PhaseFunction::Isotropic(Isotropic));
+        let even = tabulated(&PhaseFunction::Isotropic(Isotropic).into());
         assert_eq!((even.angles[0], even.angles.len()), (0.0, 961));
         assert!((even.angles[960] - PI).abs() < 1e-15 && even.angles.windows(2).all(|a| a[0] < a[1]));
         assert!((integral(&even, 0) - 1.0).abs() < 1e-6, "f32 values");
-        let given = tabulated(&PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.95 }));
+        let given = tabulated(&PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.95 }).into());
         let lobes = one_lobe(&[400.0, 600.0], &[0.95, 0.5]);
         // Trapezia over steps of 2 %: a quarter of a thousandth. The lobe of f32 is that of f64 to its rounding.
         for (phase, i) in [(&given, 0), (&lobes, 0), (&lobes, 1)] {
             assert!((integral(phase, i) - 1.0).abs() < 5e-4, "{}", integral(phase, i));
         }
+        let over_wavelength = Spectrum::Table { wavelengths: vec![400.0, 600.0], values: vec![0.95, 0.5] };
+        let spectral = tabulated(&SpectralPhase::henyey_greenstein(over_wavelength).unwrap().into());
+        assert!((at(&spectral, 400.0)[0] / at(&lobes, 400.0)[0] - 1.0).abs() < 1e-4);
+        assert!(at(&spectral, 700.0).iter().zip(&lobes.values[1]).all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
         let pairs = given.values[0].iter().zip(&lobes.values[0]);
-        assert!(pairs.clone().all(|(a, b)| (a / b - 1.0).abs() < 1e-5));
+        assert!(pairs.clone().all(|(a, b)| (a / b - 1.0).abs() < 1e-4));
         assert!((backscattered_share(&even.angles, &even.values[0]) - 0.5).abs() < 1e-6);
     }
 
@@ -103,7 +115,7 @@ mod tests {
         ] {
             assert_eq!(at(&phase, lambda), values, "{lambda}");
         }
-        let one = tabulated(&PhaseFunction::Isotropic(Isotropic));
+        let one = tabulated(&PhaseFunction::Isotropic(Isotropic).into());
         assert_eq!(at(&one, 400.0), one.values[0]);
     }
 }

@@ -38,7 +38,7 @@ fn given(wavelengths: &[f64]) -> MediumReport {
         sigma_a: LaneCurve::sampled(|lambda| if lambda < 500.0 { 0.02 } else { 0.3 }),
         sigma_s: LaneCurve::Constant(0.5),
         emission: LaneCurve::Constant(0.0),
-        phase: PhaseFunction::Isotropic(Isotropic),
+        phase: PhaseFunction::Isotropic(Isotropic).into(),
         density: Density::default(),
     };
     let subject = Subject::Given { index: RefractiveIndex::Constant(1.33), medium: Box::new(medium) };

@@ -14,7 +14,10 @@ pub(super) fn read(table: &Table<'_>) -> Result<Contents, SceneError> {
     let [least, greatest] = TEMPERATURE_RANGE;
     let temperature = asked.clamp(least, greatest);
     let warning = (temperature != asked).then(|| {
-        format!("temperature = {asked}: what ice encloses is known from {least} to {greatest} degrees Celsius; {temperature} is taken")
+        format!(
+            "temperature = {asked}: what ice encloses is known from {least} to {greatest} degrees Celsius; \
+             {temperature} is taken"
+        )
     });
     let salinity = given("salinity", &Allowed::SALINITY)?.unwrap_or(0.0);
     let ice_density = given("ice_density", &Allowed::ICE_DENSITY)?;

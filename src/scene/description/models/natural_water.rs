@@ -23,7 +23,10 @@ pub(super) fn read(table: &Table<'_>) -> Result<Contents, SceneError> {
     let extrapolated = |what: &str, value: f64, [least, greatest]: [f32; 2], unit: &str| {
         let inside = f64::from(least) <= value && value <= f64::from(greatest);
         (!inside).then(|| {
-            format!("{what} = {value}: the index of water is known from {least} to {greatest} {unit}; beyond it is extrapolated")
+            format!(
+                "{what} = {value}: the index of water is known from {least} to {greatest} {unit}; \
+                 beyond it is extrapolated"
+            )
         })
     };
     let warnings = [
