@@ -4,6 +4,7 @@ mod compare;
 mod duration;
 mod encode;
 mod exit;
+mod files;
 mod info;
 mod optics;
 mod progress;
@@ -48,7 +49,7 @@ enum Command {
     Info(info::InfoArguments),
     /// Make a movie, or a sheet of small pictures, of what was rendered
     Encode(encode::EncodeArguments),
-    /// Print what particles scatter and absorb
+    /// Print and draw what a medium, or a sphere, scatters and absorbs
     Optics(optics::OpticsArguments),
     /// Render frames in several ways and measure how they differ
     Study(study::StudyArguments),

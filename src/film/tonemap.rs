@@ -60,7 +60,7 @@ fn number_or_black(component: f32) -> f32 {
 
 /// Mixes a colour towards the grey of its luminance until no component is negative; black if its luminance is not
 /// positive.
-fn into_gamut(colour: Vec3) -> Vec3 {
+pub(crate) fn into_gamut(colour: Vec3) -> Vec3 {
     let least = colour.min_element();
     if least >= 0.0 {
         return colour;
@@ -90,7 +90,7 @@ fn neutral(colour: Vec3) -> Vec3 {
 }
 
 /// Linear to sRGB, for components in [0, 1].
-fn srgb_encode(linear: f32) -> f32 {
+pub(crate) fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * pow(linear, 1.0 / 2.4) - 0.055 }
 }
 

@@ -7,6 +7,7 @@
 //! Indices are n + i k with k >= 0 absorbing. `eta_t_over_i` is the index on the far side over the index on the side
 //! that the light, or the path, comes from. Coefficients are in 1/m, wavelengths in nm in vacuum.
 
+pub mod apparent;
 pub mod density;
 pub mod dwivedi;
 pub mod fresnel;

@@ -310,6 +310,22 @@ fn coefficients_of(medium: &MediumDescription, mode: LaneMode) -> [LaneCurve; 2]
     }
 }
 
+impl MediumDescription {
+    /// A medium without a model over wavelength, at a density of 1 everywhere.
+    pub fn over_wavelength(&self) -> Medium {
+        let [sigma_a, sigma_s] = coefficients_of(self, LaneMode::Spectral);
+        Medium {
+            name: String::new(),
+            n: self.ior.for_rays(),
+            sigma_a,
+            sigma_s,
+            emission: LaneCurve::Constant(0.0),
+            phase: self.phase.clone(),
+            density: Density::default(),
+        }
+    }
+}
+
 fn environment_of(
     description: &SceneDescription,
     mode: LaneMode,

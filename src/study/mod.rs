@@ -5,6 +5,7 @@
 //! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
 //! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
 //! * [`flip`](mod@flip) says how different two pictures look.
+//! * [`medium`] says what a medium does to light.
 //! * [`metrics`] says how far a picture is from a reference.
 //! * [`distributions`] has the quantiles that tests of pictures need.
 //! * [`plot`] draws results.
@@ -18,6 +19,7 @@ pub mod convergence;
 pub mod distributions;
 pub mod error;
 pub mod flip;
+pub mod medium;
 pub mod metrics;
 pub mod plot;
 pub mod seed_modes;

@@ -15,13 +15,17 @@
 //! [`Plot`] alone. Series differ in shape as well as in colour, and the colours are those of `[OKABE08]`, which people
 //! see apart who lack a kind of cones. A name stands in black beside its mark, since pale colours make bad letters.
 //!
+//! Over angles there is a [`Polar`] diagram beside the [`Plot`], in the same manner.
+//!
 //! What has no place on an axis (a number that is not finite, or not positive on a logarithmic one) is left out; an error
 //! bar that goes below a logarithmic axis goes to its end and has no foot there.
 
 mod draw;
 mod label;
 mod marks;
+mod polar;
 mod scale;
+mod sheet;
 
 /// A diagram.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +40,18 @@ pub struct Plot {
     pub series: Vec<Series>,
     /// What data are compared with.
     pub guides: Vec<Guide>,
+}
+
+/// Values over an angle from 0 to 180 degrees, as distances from the middle of a half circle. They are the same on
+/// either side of the axis, so half of it says all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polar {
+    /// What stands over it.
+    pub title: String,
+    /// The distance from the middle.
+    pub radius: Axis,
+    /// The data, each x being an angle in degrees; the first one is drawn last, over the others. There are no error bars.
+    pub series: Vec<Series>,
 }
 
 /// An axis.
@@ -88,6 +104,8 @@ pub enum Style {
     Marks,
     /// A line alone, as of a formula.
     Line,
+    /// A dashed line, of what a line is compared with: the first dashed one has the colour of the first series.
+    Dashes,
 }
 
 /// A point and how well it is known.
@@ -140,5 +158,14 @@ impl Plot {
     }
 }
 
+impl Polar {
+    /// The text of an SVG file.
+    pub fn svg(&self) -> String {
+        polar::svg(self)
+    }
+}
+
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(super) use tests::parsed;

@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::{Shared, write};
+use super::Shared;
 use crate::cli::duration::duration;
 use crate::cli::exit::Exit;
+use crate::cli::files::write;
 #[cfg(unix)]
 use crate::cli::signals;
 use crate::cli::streams::{print, say};

@@ -9,14 +9,12 @@ mod convergence;
 mod stability;
 mod temporal;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::exit::Exit;
 use super::streams::say;
-use crate::driver::RenderError;
-use crate::film::write::write_atomically;
 use crate::sequence::FrameNumber;
 use crate::study::StudyError;
 
@@ -72,15 +70,4 @@ pub fn run(arguments: &StudyArguments) -> Exit {
             _ => Exit::Usage,
         }
     })
-}
-
-/// Writes results, and says why when they cannot be written.
-fn write(file: &Path, text: &str) -> Exit {
-    match write_atomically(file, text.as_bytes()) {
-        Ok(()) => Exit::Complete,
-        Err(error) => {
-            say(&format!("error: {error}"));
-            Exit::from(&RenderError::from(error))
-        }
-    }
 }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::{Shared, write};
+use super::Shared;
 use crate::cli::exit::Exit;
+use crate::cli::files::write;
 use crate::cli::streams::{print, say};
 use crate::study::stability::{self, GROUPS, Outcome, Row, Selection, diagram, table};
 

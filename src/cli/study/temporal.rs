@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::{Shared, write};
+use super::Shared;
 use crate::cli::exit::Exit;
+use crate::cli::files::write;
 use crate::cli::streams::{print, say};
 use crate::driver::Job;
 use crate::sequence::{FrameNumber, FrameSelection};

@@ -56,14 +56,25 @@ impl Mixture {
     /// # Errors
     /// What is wrong with the mixture.
     pub fn scattering(&self, cache: &Cache) -> Result<Scattering, MixtureError> {
+        self.scattering_kept(cache).map(|(scattering, _)| scattering)
+    }
+
+    /// The same, and whether the cache had it.
+    ///
+    /// # Errors
+    /// What is wrong with the mixture.
+    pub fn scattering_kept(&self, cache: &Cache) -> Result<(Scattering, bool), MixtureError> {
         self.validate()?;
+        let mut was_kept = true;
         let coefficients = evenly(STEPS);
         let phases = evenly(PHASE_STEPS[usize::from(self.has_rings())]);
-        cache.remembered(&self.key(&coefficients, &phases), || {
+        let scattering = cache.remembered(&self.key(&coefficients, &phases), || {
+            was_kept = false;
             let bulk = self.bulk(&coefficients)?;
             let phase = self.phase_of(&bulk, &phases)?;
             Ok(Scattering { bulk, phase })
-        })
+        })?;
+        Ok((scattering, was_kept))
     }
 
     /// Phase functions at some wavelengths in nm, rising.

@@ -85,3 +85,16 @@ pub enum SceneError {
         cure: String,
     },
 }
+
+impl SceneError {
+    /// Where it is, if it is in a text.
+    pub(super) fn place_mut(&mut self) -> Option<&mut Place> {
+        match self {
+            Self::Io { .. } | Self::TooLong { .. } => None,
+            Self::Syntax { place, .. }
+            | Self::UnknownKey { place, .. }
+            | Self::MissingKey { place, .. }
+            | Self::Invalid { place, .. } => Some(place),
+        }
+    }
+}

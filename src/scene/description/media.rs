@@ -56,7 +56,7 @@ pub(super) fn existing_medium<T>(
     Err(value.invalid(format!("{user} needs a medium [media.{name}], which is not there: {near}")))
 }
 
-fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
+pub(super) fn medium(value: &Value<'_>) -> Result<MediumDescription, SceneError> {
     let table = value.table("a table such as [media.sea]")?;
     let emission = table.get("emission");
     let default = MediumDescription {

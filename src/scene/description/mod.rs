@@ -27,6 +27,7 @@ mod phase;
 mod regions;
 mod render;
 mod scene;
+mod settings;
 mod sky;
 mod spectral_phase;
 mod spectrum_value;
@@ -43,6 +44,7 @@ pub use framed::default_scene;
 pub use framing::automatic_placement;
 pub use meshes::{MeshContents, MeshDescription};
 pub use models::{Model, ModelKind, ModelPhase};
+pub use nearest::suggestion;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -18,7 +18,7 @@ pub(super) fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) 
 }
 
 /// Ends a message: a suggestion, or all the words there are.
-pub(super) fn suggestion(word: &str, known: &[&str], all: &str) -> String {
+pub fn suggestion(word: &str, known: &[&str], all: &str) -> String {
     match nearest(word, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("{all} {}", list(known)),

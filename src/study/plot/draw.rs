@@ -2,12 +2,11 @@
 
 use std::fmt::Write;
 
-use quick_xml::escape::escape;
-
 use super::label::{pixel, text};
-use super::marks::{colour, mark};
+use super::marks::{look, mark};
 use super::scale::{Scale, Tick};
-use super::{AxisKind, Guide, Plot, Series, Style};
+use super::sheet::{self, Strokes};
+use super::{AxisKind, Guide, Plot, Series};
 
 /// Left, top, right and bottom of the field of data, in pixels.
 const FIELD: [f64; 4] = [66.0, 38.0, 486.0, 338.0];
@@ -67,18 +66,12 @@ impl<'a> Drawing<'a> {
         let title = LETTER * 1.1 * self.plot.title.chars().count() as f64;
         let width = (right + 40.0 + LETTER * names as f64).max(left + title).ceil();
         let height = bottom + BELOW;
-        let title = escape(&self.plot.title);
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"Helvetica, Arial, sans-serif\" \
-             font-size=\"13\" fill=\"#000\">\n<title>{title}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n"
-        );
+        let mut svg = sheet::head(&self.plot.title, width, height);
         self.draw_ticks(&mut svg);
         self.plot.guides.iter().for_each(|guide| self.draw_guide(&mut svg, guide));
         // The first one is drawn last: it is mostly what the diagram is about.
         for (index, series) in self.plot.series.iter().enumerate().rev() {
-            self.draw_series(&mut svg, index, series);
+            self.draw_series(&mut svg, look(&self.plot.series, index), series);
         }
         let _ = writeln!(
             svg,
@@ -165,36 +158,25 @@ impl<'a> Drawing<'a> {
         (from < to).then(|| [at(from), at(to)])
     }
 
-    fn draw_series(&self, svg: &mut String, index: usize, series: &Series) {
-        let colour = colour(index);
-        let (mut line, mut bars, mut marks) = (String::new(), String::new(), String::new());
+    fn draw_series(&self, svg: &mut String, look: usize, series: &Series) {
+        let mut strokes = Strokes::default();
         for point in &series.points {
             let (Some(x), Some(y)) = (self.x.at(point.x), self.y.at(point.y)) else { continue };
-            line += &format!("{}{} {}", if line.is_empty() { "M" } else { "L" }, pixel(x), pixel(y));
-            marks += &mark(index, [x, y]);
-            marks.push('\n');
+            strokes.go_to([x, y], series.style);
+            strokes.marks += &mark(look, [x, y]);
+            strokes.marks.push('\n');
             for (end, value) in point.y_range.into_iter().flatten().enumerate() {
                 let (to, has_foot) = self.y.end(value, end);
                 let foot = if has_foot { format!("m-{FOOT} 0h{}", 2.0 * FOOT) } else { String::new() };
-                bars += &format!("M{} {}V{}{foot}", pixel(x), pixel(y), pixel(to));
+                strokes.bars += &format!("M{} {}V{}{foot}", pixel(x), pixel(y), pixel(to));
             }
             for (end, value) in point.x_range.into_iter().flatten().enumerate() {
                 let (to, has_foot) = self.x.end(value, end);
                 let foot = if has_foot { format!("m0 -{FOOT}v{}", 2.0 * FOOT) } else { String::new() };
-                bars += &format!("M{} {}H{}{foot}", pixel(x), pixel(y), pixel(to));
+                strokes.bars += &format!("M{} {}H{}{foot}", pixel(x), pixel(y), pixel(to));
             }
         }
-        let _ = writeln!(svg, r#"<g fill="{colour}" stroke="{colour}">"#);
-        if series.style != Style::Marks {
-            let _ =
-                writeln!(svg, r#"<path d="{line}" fill="none" stroke-width="1.6" stroke-linejoin="round"/>"#);
-        }
-        let _ = writeln!(svg, r#"<path d="{bars}" fill="none" stroke-width="1.2"/>"#);
-        if series.style != Style::Line {
-            // A white edge keeps marks apart that lie upon each other.
-            let _ = writeln!(svg, "<g stroke=\"#fff\" stroke-width=\"0.8\">\n{marks}</g>");
-        }
-        svg.push_str("</g>\n");
+        strokes.draw(svg, look, series.style);
     }
 
     /// The names of the series beside the field, as near as they can be to the height of their last points.
@@ -202,19 +184,9 @@ impl<'a> Drawing<'a> {
         let [_, top, right, bottom] = FIELD;
         let last = |series: &Series| series.points.iter().rev().find_map(|p| self.y.at(p.y));
         let heights = self.plot.series.iter().map(|s| last(s).unwrap_or(top)).collect::<Vec<_>>();
-        for (index, (series, at)) in
-            self.plot.series.iter().zip(apart(&heights, [top + 8.0, bottom - 8.0])).enumerate()
-        {
-            let colour = colour(index);
-            let _ = write!(svg, r#"<g fill="{colour}" stroke="{colour}">"#);
-            if series.style != Style::Marks {
-                let _ = write!(svg, r#"<path d="M{} {}h22" stroke-width="1.6"/>"#, right + 8.0, pixel(at));
-            }
-            if series.style != Style::Line {
-                svg.push_str(&mark(index, [right + 19.0, at]));
-            }
-            svg.push_str("</g>\n");
-            text(svg, &format!(r#"x="{}" y="{}""#, right + 36.0, pixel(at + 4.5)), &series.name);
+        let places = apart(&heights, [top + 8.0, bottom - 8.0]);
+        for (index, (series, at)) in self.plot.series.iter().zip(places).enumerate() {
+            sheet::draw_name(svg, look(&self.plot.series, index), series, [right + 8.0, at]);
         }
     }
 

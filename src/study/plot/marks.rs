@@ -1,6 +1,7 @@
 //! What tells series apart: a colour and a shape each.
 
 use super::label::pixel;
+use super::{Series, Style};
 
 /// `[OKABE08]` without its yellow, which is too pale for lines on white; the darker ones first.
 const COLOURS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"];
@@ -16,6 +17,15 @@ const SHAPES: [&[[f64; 2]]; 5] = [
 
 /// Radius of a mark in pixels.
 const RADIUS: f64 = 4.0;
+
+/// Which colour and shape a series has: its number, and among dashed ones its number there, so that the first of them
+/// looks like the first of all.
+pub(super) fn look(series: &[Series], index: usize) -> usize {
+    match series[index].style {
+        Style::Dashes => series[..index].iter().filter(|other| other.style == Style::Dashes).count(),
+        _ => index,
+    }
+}
 
 /// The colour of series `index`. After all colours the first comes again, with another shape.
 pub(super) fn colour(index: usize) -> &'static str {

@@ -33,7 +33,7 @@ fn plot() -> Plot {
 }
 
 /// The names of all elements, and all texts; fails where the text is not well formed.
-fn parsed(svg: &str) -> (Vec<String>, Vec<String>) {
+pub fn parsed(svg: &str) -> (Vec<String>, Vec<String>) {
     let mut reader = Reader::from_str(svg);
     reader.config_mut().check_end_names = true;
     let (mut names, mut texts, mut depth) = (Vec::new(), Vec::new(), 0);
@@ -112,4 +112,70 @@ fn a_slope_is_as_steep_as_it_says() {
         (66.0..=486.0).contains(&ax) && (66.0..=486.0).contains(&bx) && ay >= 38.0 && by <= 338.0,
         "{path}"
     );
+}
+
+fn polar() -> Polar {
+    let lobe = |g: f64| {
+        let density =
+            move |i: i32| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * f64::from(i).to_radians().cos()).powf(1.5);
+        (0..=180).map(|i| Point::new(f64::from(i), density(i))).collect()
+    };
+    let series = |name: &str, g: f64, style| Series { name: name.into(), points: lobe(g), style };
+    Polar {
+        title: "Lobes".into(),
+        radius: Axis::logarithmic("4 \u{3c0} p"),
+        series: vec![
+            series("g = 0.9", 0.9, Style::Line),
+            series("g = 0.5", 0.5, Style::Line),
+            series("g = 0.8", 0.8, Style::Dashes),
+        ],
+    }
+}
+
+/// The x and y of every corner of the path in a line of the file.
+fn corners(line: &str) -> Vec<[f64; 2]> {
+    let path = line.split('"').nth(1).unwrap();
+    let corner = |text: &str| {
+        let (x, y) = text.split_once(' ').unwrap();
+        [x.parse().unwrap(), y.parse().unwrap()]
+    };
+    path[1..].split('L').map(corner).collect()
+}
+
+#[test]
+fn a_polar_diagram_has_straight_on_to_the_right() {
+    let svg = polar().svg();
+    let (_, texts) = parsed(&svg);
+    for text in ["Lobes", "0°", "90°", "180°", "g = 0.9", "4 \u{3c0} p"] {
+        assert!(texts.iter().any(|t| t == text), "{text} of {texts:?}");
+    }
+    assert_eq!(svg, polar().svg());
+    // The first is drawn last.
+    let lines: Vec<&str> = svg.lines().filter(|line| line.contains("stroke-linejoin")).collect();
+    assert!(lines.len() == 3 && lines[0].contains("stroke-dasharray"), "{svg}");
+    for line in &lines {
+        let corners = corners(line);
+        let ([first_x, first_y], [last_x, last_y]) = (corners[0], corners[corners.len() - 1]);
+        assert!(first_x > 276.0 && last_x < 276.0 && first_x - 276.0 > 276.0 - last_x, "{line}");
+        // Points nobody could tell from the last one are left out.
+        assert!((first_y - 292.0).abs() < 1e-9 && (last_y - 292.0).abs() < 0.42, "{line}");
+        let from_middle = corners.iter().map(|[x, y]| (x - 276.0).hypot(y - 292.0));
+        assert!(from_middle.clone().fold(0.0, f64::max) < 210.0 && corners.iter().all(|[_, y]| *y <= 292.01));
+    }
+    // A dashed series looks like the one that it is compared with: here the first.
+    assert_eq!(svg.matches("<g fill=\"#0072B2\" stroke=\"#0072B2\">").count(), 4);
+}
+
+#[test]
+fn what_has_no_place_in_a_polar_diagram_is_left_out() {
+    let mut plot = polar();
+    plot.series.truncate(1);
+    for (i, (x, y)) in [(-1.0, 1.0), (200.0, 1.0), (10.0, 0.0), (20.0, f64::NAN)].into_iter().enumerate() {
+        plot.series[0].points[60 + i] = Point::new(x, y);
+    }
+    let svg = plot.svg();
+    parsed(&svg);
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    plot.series.clear();
+    parsed(&plot.svg());
 }

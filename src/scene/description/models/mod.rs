@@ -11,6 +11,7 @@ use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
 use crate::optics::particles::Mixture;
+use crate::optics::{ice, water};
 
 /// A medium that is computed from what is in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,22 @@ pub enum ModelPhase {
 }
 
 impl ModelKind {
+    /// Every model.
+    pub const ALL: [Self; 4] = [Self::NaturalWater, Self::Iceberg, Self::Milk, Self::Particles];
+
+    /// The names of its presets.
+    pub fn presets(self) -> Vec<&'static str> {
+        fn names<T>(presets: &[(&'static str, T)]) -> Vec<&'static str> {
+            presets.iter().map(|(name, _)| *name).collect()
+        }
+        match self {
+            Self::NaturalWater => names(&water::natural::PRESETS),
+            Self::Iceberg => names(&ice::iceberg::PRESETS),
+            Self::Milk => names(&crate::optics::milk::PRESETS),
+            Self::Particles => Vec::new(),
+        }
+    }
+
     /// Its name in the scene file.
     pub fn name(self) -> &'static str {
         match self {

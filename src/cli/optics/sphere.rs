@@ -1,26 +1,14 @@
-//! `floe optics`
+//! `floe optics sphere`
 
-use clap::{Args, Subcommand};
+use clap::Args;
 use serde::Serialize;
 
-use super::exit::Exit;
-use super::streams::{print, say};
+use crate::cli::exit::Exit;
+use crate::cli::streams::{print, say};
 use crate::optics::lorenz_mie::{Coefficients, Complex64, Sphere, SphereError};
 
 #[derive(Debug, Args)]
-pub struct OpticsArguments {
-    #[command(subcommand)]
-    of: Of,
-}
-
-#[derive(Debug, Subcommand)]
-enum Of {
-    /// One sphere, by Lorenz-Mie theory
-    Sphere(SphereArguments),
-}
-
-#[derive(Debug, Args)]
-struct SphereArguments {
+pub(super) struct SphereArguments {
     /// Refractive index relative to the host, n+ki with k >= 0 absorbing: 1.33, 1.5+0.1i
     #[arg(long, value_name = "INDEX", allow_hyphen_values = true, value_parser = index)]
     m: Complex64,
@@ -44,8 +32,7 @@ struct SphereReport {
 }
 
 /// Computes and prints.
-pub fn run(arguments: &OpticsArguments) -> Exit {
-    let Of::Sphere(arguments) = &arguments.of;
+pub(super) fn run(arguments: &SphereArguments) -> Exit {
     match report(arguments) {
         Ok(report) if arguments.json => print(&(serde_json::to_string(&report).unwrap_or_default() + "\n")),
         Ok(report) => print(&text(&report)),

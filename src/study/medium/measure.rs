@@ -1,0 +1,159 @@
+//! Computes what a report says.
+
+use super::{Colour, Column, MediumReport, MediumStudy, SpeciesReport, Subject, phase};
+use crate::optics::RefractiveIndex;
+use crate::optics::apparent::{backscattered_share, diffuse_attenuation, reflectance};
+use crate::optics::half_space::h_function::HFunction;
+use crate::optics::medium::Medium;
+use crate::optics::particles::{Bulk, Cache, EnsemblePhase, MixtureError, Scattering};
+use crate::spectrum::{LaneCurve, Wavelengths};
+
+/// Wavelengths in nm at which colours are computed where nothing else says them; what lies between is linear.
+const STEP: usize = 5;
+
+impl MediumStudy {
+    /// Computes it, with the scattering of particles from the cache where that has it.
+    ///
+    /// # Errors
+    /// What is wrong with a mixture.
+    pub fn run(&self, cache: &Cache) -> Result<MediumReport, MixtureError> {
+        let (fine, bulk, phase, was_kept) = match &self.subject {
+            Subject::Mixture { mixture, one_lobe } => {
+                let (Scattering { bulk: fine, phase }, was_kept) = mixture.scattering_kept(cache)?;
+                let bulk = match chosen(&fine, &self.wavelengths) {
+                    Some(bulk) => bulk,
+                    None => mixture.bulk(&self.wavelengths)?,
+                };
+                let phase = if *one_lobe { phase::one_lobe(&fine.wavelengths, &fine.g) } else { phase };
+                (fine, bulk, phase, was_kept)
+            }
+            Subject::Given { index, medium } => {
+                let visible: Vec<f64> = (380..=780).step_by(STEP).map(f64::from).collect();
+                let [fine, bulk] = [&visible, &self.wavelengths].map(|at| given(index, medium, at));
+                (fine, bulk, phase::tabulated(&medium.phase), false)
+            }
+        };
+        Ok(MediumReport { was_kept, ..self.report(&fine, bulk, phase) })
+    }
+
+    /// `fine` is what colours are of.
+    fn report(&self, fine: &Bulk, bulk: Bulk, phase: EnsemblePhase) -> MediumReport {
+        let [seen, told] = [fine, &bulk].map(|bulk| Apparent::of(bulk, &phase));
+        let over = |values: Vec<f64>| move |lambda: f64| between(&fine.wavelengths, &values, lambda);
+        let extinction = over(sums(&fine.sigma_a, &fine.sigma_s));
+        let attenuation = over(seen.attenuation);
+        let column = Column {
+            length: self.column,
+            straight: Colour::dimmed(|lambda| extinction(lambda) * self.column),
+            diffuse: Colour::dimmed(|lambda| attenuation(lambda) * self.column),
+        };
+        let sigma_t = sums(&bulk.sigma_a, &bulk.sigma_s);
+        let pairs = bulk.sigma_s.iter().zip(&sigma_t);
+        let albedo = pairs.map(|(s, t)| if *t > 0.0 { s / t } else { 0.0 }).collect();
+        let species = bulk.species.into_iter().map(|s| SpeciesReport {
+            name: s.name,
+            sigma_t: s.sigma_t,
+            sigma_s: s.sigma_s,
+            g: s.g,
+        });
+        MediumReport {
+            medium: self.name.clone(),
+            reduced_sigma_s: bulk.sigma_s.iter().zip(&bulk.g).map(|(s, g)| s * (1.0 - g)).collect(),
+            backscattering: told.backscattering,
+            diffuse_attenuation: told.attenuation,
+            reflectance: told.reflectance,
+            wavelengths: bulk.wavelengths,
+            n: bulk.n,
+            sigma_a: bulk.sigma_a,
+            sigma_s: bulk.sigma_s,
+            g: bulk.g,
+            sigma_t,
+            albedo,
+            species: species.collect(),
+            quadrature_error: bulk.relative_error.max(fine.relative_error),
+            column,
+            depth: Colour::reflected(over(seen.reflectance)),
+            warnings: self.warnings.clone(),
+            phase,
+            was_kept: false,
+        }
+    }
+}
+
+/// What follows from coefficients, at each wavelength.
+struct Apparent {
+    backscattering: Vec<f64>,
+    attenuation: Vec<f64>,
+    reflectance: Vec<f64>,
+}
+
+impl Apparent {
+    fn of(bulk: &Bulk, phase: &EnsemblePhase) -> Self {
+        let h = HFunction::default();
+        let shares: Vec<f64> = phase.values.iter().map(|v| backscattered_share(&phase.angles, v)).collect();
+        let mut found = Self { backscattering: Vec::new(), attenuation: Vec::new(), reflectance: Vec::new() };
+        for (i, lambda) in bulk.wavelengths.iter().enumerate() {
+            let share = between(&phase.wavelengths, &shares, *lambda);
+            let (a, s, g) = (bulk.sigma_a[i], bulk.sigma_s[i], bulk.g[i]);
+            found.backscattering.push(share * s);
+            found.attenuation.push(diffuse_attenuation(a, s, g));
+            found.reflectance.push(reflectance(a, s, g, share, &h));
+        }
+        found
+    }
+}
+
+/// What a table that is there already has of all these wavelengths.
+fn chosen(bulk: &Bulk, wavelengths: &[f64]) -> Option<Bulk> {
+    let places = wavelengths.iter().map(|w| bulk.wavelengths.iter().position(|other| other == w));
+    let places: Vec<usize> = places.collect::<Option<_>>()?;
+    let of = |values: &Vec<f64>| places.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+    let mut found = bulk.clone();
+    for values in [&mut found.wavelengths, &mut found.n, &mut found.sigma_a, &mut found.sigma_s, &mut found.g]
+    {
+        *values = of(values);
+    }
+    for species in &mut found.species {
+        for values in [&mut species.sigma_t, &mut species.sigma_s, &mut species.g] {
+            *values = of(values);
+        }
+    }
+    Some(found)
+}
+
+/// A medium whose coefficients are given, as rays meet it.
+fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk {
+    let over = |curve: &LaneCurve| {
+        let at = |lambda: &f64| {
+            let path = Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
+            f64::from(curve.lanes(&path).x)
+        };
+        wavelengths.iter().map(at).collect()
+    };
+    Bulk {
+        wavelengths: wavelengths.to_vec(),
+        n: wavelengths.iter().map(|lambda| index.n(*lambda)).collect(),
+        sigma_a: over(&medium.sigma_a),
+        sigma_s: over(&medium.sigma_s),
+        g: over(&medium.phase.mean_cosine()),
+        species: Vec::new(),
+        relative_error: 0.0,
+    }
+}
+
+fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+/// Linear between rising wavelengths, and constant beyond them.
+fn between(wavelengths: &[f64], values: &[f64], lambda: f64) -> f64 {
+    let above = wavelengths.partition_point(|w| *w <= lambda);
+    match (above.checked_sub(1), wavelengths.get(above)) {
+        (None, _) => values[0],
+        (Some(below), None) => values[below],
+        (Some(below), Some(end)) => {
+            let t = (lambda - wavelengths[below]) / (end - wavelengths[below]);
+            values[below] + (values[above] - values[below]) * t
+        }
+    }
+}
