@@ -317,6 +317,7 @@ impl MediumDescription {
         Medium {
             name: String::new(),
             n: self.ior.for_rays(),
+            index: LaneCurve::Constant(self.ior.for_rays()),
             sigma_a,
             sigma_s,
             emission: LaneCurve::Constant(0.0),
