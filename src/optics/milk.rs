@@ -24,6 +24,8 @@ use std::f64::consts::PI;
 use super::particles::{Host, Mixture, SizeDistribution, Species};
 use super::{RefractiveIndex, water};
 use crate::spectrum::Spectrum;
+use crate::spectrum::cie::knots;
+use crate::spectrum::curve::interpolate;
 
 /// Milk of a composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +64,7 @@ impl Milk {
         let litre = 100.0 / 1.03;
         let fat = Species {
             name: "fat".to_owned(),
-            index: table(FAT_N, FAT_K),
+            index: RefractiveIndex::every_25_nm(FAT_N, FAT_K),
             sizes: self.globules().sizes(),
             volume_fraction: self.fat / 0.915 / litre, // (1)
         };
@@ -123,30 +125,28 @@ fn micelles() -> SizeDistribution {
 fn host() -> Host {
     // At the nodes of the absorption of water, 5 nm apart, and at those of the index.
     let absorbed = |lambda: f64| water::absorption(lambda) + riboflavin(lambda);
-    let wavelengths: Vec<f32> = water::wavelengths().map(|lambda| lambda as f32).collect();
-    let values = water::wavelengths().map(|lambda| absorbed(lambda) as f32).collect();
-    let k = std::array::from_fn(|i| {
-        let lambda = 375.0 + 25.0 * i as f64;
-        (absorbed(lambda) * lambda * 1e-9 / (4.0 * PI)) as f32
-    });
-    Host { index: table(WATER_N, k), absorption: Spectrum::Table { wavelengths, values }, molecular: None }
+    let k = NODES.map(|lambda| (absorbed(lambda) * lambda * 1e-9 / (4.0 * PI)) as f32);
+    Host {
+        index: RefractiveIndex::every_25_nm(WATER_N, k),
+        absorption: Spectrum::tabulated(knots(), absorbed),
+        molecular: None,
+    }
 }
 
 /// Absorption of the riboflavin in milk in 1/m: 4 pi k / lambda of (7), linear between its nodes.
 fn riboflavin(lambda_nm: f64) -> f64 {
-    let position = ((lambda_nm - 375.0) / 25.0).clamp(0.0, 16.0);
-    let index = (position as usize).min(15);
-    let absorbance =
-        ABSORBANCE[index] + (ABSORBANCE[index + 1] - ABSORBANCE[index]) * (position - index as f64);
+    let absorbance = interpolate(&NODES, &ABSORBANCE, lambda_nm);
     std::f64::consts::LN_10 * (0.17 / 376.3682) / (100.0 / 1.03) * (3.3e6 / 0.25654) * absorbance
 }
 
-fn table(n: [f32; 17], k: [f32; 17]) -> RefractiveIndex {
-    let wavelengths = (0..n.len()).map(|i| 375.0 + 25.0 * i as f32).collect();
-    RefractiveIndex::Table { wavelengths, n: n.to_vec(), k: k.to_vec() }
-}
+/// Wavelengths in nm of the tables below.
+#[rustfmt::skip]
+const NODES: [f64; 17] = [
+    375.0, 400.0, 425.0, 450.0, 475.0, 500.0, 525.0, 550.0, 575.0,
+    600.0, 625.0, 650.0, 675.0, 700.0, 725.0, 750.0, 775.0,
+];
 
-/// From 375 nm in steps of 25 nm, as in the tables below `[HALE73]`.
+/// `[HALE73]`
 #[rustfmt::skip]
 const WATER_N: [f32; 17] = [
     1.341, 1.339, 1.338, 1.337, 1.336, 1.335, 1.334, 1.333, 1.333,

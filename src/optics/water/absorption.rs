@@ -19,24 +19,23 @@
 //! (2) is the usual form of the absorption of coloured dissolved organic matter, which makes fresh and coastal waters
 //! green to brown; its slope, in 1/nm, is the mean of many waters `[BRICAUD81]`.
 
+use crate::spectrum::cie::{KNOTS, interpolate};
+
 /// The temperature in degrees Celsius at which pure water was measured.
 pub const MEASURED_AT: f64 = 22.0;
-
-const FIRST: f64 = 380.0;
-const STEP: f64 = 5.0;
 
 /// 1/nm, (2).
 const DISSOLVED_SLOPE: f64 = 0.014;
 
 /// Absorption coefficient of pure water in 1/m, linear between 5 nm steps, constant beyond 380 and 780 nm.
 pub fn absorption(lambda_nm: f64) -> f64 {
-    between(&PURE, lambda_nm)
+    interpolate(&PURE, lambda_nm)
 }
 
 /// Absorption coefficient in 1/m of water of a temperature in degrees Celsius and a salinity in parts per thousand, (1).
 pub fn absorption_at(lambda_nm: f64, temperature: f64, salinity: f64) -> f64 {
-    let warmer = (temperature - MEASURED_AT) * between(&WARMTH, lambda_nm);
-    (absorption(lambda_nm) + 1e-4 * (warmer + salinity * between(&SALT, lambda_nm))).max(0.0)
+    let warmer = (temperature - MEASURED_AT) * interpolate(&WARMTH, lambda_nm);
+    (absorption(lambda_nm) + 1e-4 * (warmer + salinity * interpolate(&SALT, lambda_nm))).max(0.0)
 }
 
 /// Absorption coefficient in 1/m of dissolved organic matter that has `at_440` of it at 440 nm, (2).
@@ -44,21 +43,9 @@ pub fn dissolved_matter(lambda_nm: f64, at_440: f64) -> f64 {
     at_440 * libm::exp(-DISSOLVED_SLOPE * (lambda_nm - 440.0))
 }
 
-/// The wavelengths in nm of the tables.
-pub fn wavelengths() -> impl Iterator<Item = f64> {
-    (0..PURE.len()).map(|i| FIRST + STEP * i as f64)
-}
-
-fn between(table: &[f64; 81], lambda_nm: f64) -> f64 {
-    let last = table.len() - 1;
-    let position = ((lambda_nm - FIRST) / STEP).clamp(0.0, last as f64);
-    let index = (position as usize).min(last - 1);
-    table[index] + (table[index + 1] - table[index]) * (position - index as f64)
-}
-
 /// 1/m from 380 nm in steps of 5 nm: `[POPE97]` to 725 nm, `[KOU93]` from 730 nm.
 #[rustfmt::skip]
-const PURE: [f64; 81] = [
+const PURE: [f64; KNOTS] = [
     0.01137, 0.00941, 0.00851, 0.00813, 0.00663, 0.00530, 0.00473, 0.00444, 0.00454,
     0.00478, 0.00495, 0.00530, 0.00635, 0.00751, 0.00922, 0.00962, 0.00979, 0.01011,
     0.0106, 0.0114, 0.0127, 0.0136, 0.0150, 0.0173, 0.0204, 0.0256, 0.0325,
@@ -72,7 +59,7 @@ const PURE: [f64; 81] = [
 
 /// da/dT in 1e-4 1/m per degree, from 380 nm in steps of 5 nm `[IOCCG18]`.
 #[rustfmt::skip]
-const WARMTH: [f64; 81] = [
+const WARMTH: [f64; KNOTS] = [
     0.0, 0.0, 0.0, -0.2, 0.1, 0.1, 0.0, 0.2, 0.0,
     -0.1, -0.1, 0.0, 0.0, 0.1, 0.2, 0.1, 0.1, 0.0,
     -0.1, -0.1, 0.0, -0.1, -0.1, 0.0, 0.1, 0.3, 0.8,
@@ -86,7 +73,7 @@ const WARMTH: [f64; 81] = [
 
 /// da/dS in 1e-4 1/m per part in a thousand, from 380 nm in steps of 5 nm `[IOCCG18]`; the first four are that of 400 nm.
 #[rustfmt::skip]
-const SALT: [f64; 81] = [
+const SALT: [f64; KNOTS] = [
     0.43, 0.43, 0.43, 0.43, 0.43, 0.37, 0.36, 0.34, 0.32,
     0.28, 0.26, 0.25, 0.22, 0.19, 0.17, 0.16, 0.14, 0.13,
     0.11, 0.09, 0.08, 0.06, 0.06, 0.05, 0.05, 0.04, 0.02,

@@ -6,6 +6,7 @@ use crate::optics::apparent::{backscattered_share, diffuse_attenuation, reflecta
 use crate::optics::half_space::h_function::HFunction;
 use crate::optics::medium::Medium;
 use crate::optics::particles::{Bulk, Cache, EnsemblePhase, MixtureError, Scattering};
+use crate::spectrum::curve::interpolate;
 use crate::spectrum::{LaneCurve, Wavelengths};
 
 /// Wavelengths in nm at which colours are computed where nothing else says them; what lies between is linear.
@@ -39,7 +40,7 @@ impl MediumStudy {
     /// `fine` is what colours are of.
     fn report(&self, fine: &Bulk, bulk: Bulk, phase: EnsemblePhase) -> MediumReport {
         let [seen, told] = [fine, &bulk].map(|bulk| Apparent::of(bulk, &phase));
-        let over = |values: Vec<f64>| move |lambda: f64| between(&fine.wavelengths, &values, lambda);
+        let over = |values: Vec<f64>| move |lambda: f64| interpolate(&fine.wavelengths, &values, lambda);
         let extinction = over(sums(&fine.sigma_a, &fine.sigma_s));
         let attenuation = over(seen.attenuation);
         let column = Column {
@@ -93,7 +94,7 @@ impl Apparent {
         let shares: Vec<f64> = phase.values.iter().map(|v| backscattered_share(&phase.angles, v)).collect();
         let mut found = Self { backscattering: Vec::new(), attenuation: Vec::new(), reflectance: Vec::new() };
         for (i, lambda) in bulk.wavelengths.iter().enumerate() {
-            let share = between(&phase.wavelengths, &shares, *lambda);
+            let share = interpolate(&phase.wavelengths, &shares, *lambda);
             let (a, s, g) = (bulk.sigma_a[i], bulk.sigma_s[i], bulk.g[i]);
             found.backscattering.push(share * s);
             found.attenuation.push(diffuse_attenuation(a, s, g));
@@ -124,10 +125,7 @@ fn chosen(bulk: &Bulk, wavelengths: &[f64]) -> Option<Bulk> {
 /// A medium whose coefficients are given, as rays meet it.
 fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk {
     let over = |curve: &LaneCurve| {
-        let at = |lambda: &f64| {
-            let path = Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
-            f64::from(curve.lanes(&path).x)
-        };
+        let at = |lambda: &f64| f64::from(curve.lanes(&Wavelengths::single(*lambda as f32)).x);
         wavelengths.iter().map(at).collect()
     };
     Bulk {
@@ -143,17 +141,4 @@ fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk 
 
 fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
-}
-
-/// Linear between rising wavelengths, and constant beyond them.
-fn between(wavelengths: &[f64], values: &[f64], lambda: f64) -> f64 {
-    let above = wavelengths.partition_point(|w| *w <= lambda);
-    match (above.checked_sub(1), wavelengths.get(above)) {
-        (None, _) => values[0],
-        (Some(below), None) => values[below],
-        (Some(below), Some(end)) => {
-            let t = (lambda - wavelengths[below]) / (end - wavelengths[below]);
-            values[below] + (values[above] - values[below]) * t
-        }
-    }
 }
