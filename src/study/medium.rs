@@ -12,8 +12,8 @@ pub mod colour;
 pub mod comparison;
 pub mod csv;
 pub mod diagrams;
-pub mod measure;
-pub mod phase;
+mod measure;
+mod phase;
 pub mod quantity;
 pub mod text;
 
