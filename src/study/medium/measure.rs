@@ -1,6 +1,6 @@
 //! Computes what a report says.
 
-use super::{Colour, Column, MediumReport, MediumStudy, SpeciesReport, Subject, phase};
+use super::{Colour, Column, MediumReport, MediumStudy, Subject, phase};
 use crate::optics::RefractiveIndex;
 use crate::optics::apparent::{backscattered_share, diffuse_attenuation, reflectance};
 use crate::optics::half_space::h_function::HFunction;
@@ -51,12 +51,6 @@ impl MediumStudy {
         let sigma_t = sums(&bulk.sigma_a, &bulk.sigma_s);
         let pairs = bulk.sigma_s.iter().zip(&sigma_t);
         let albedo = pairs.map(|(s, t)| if *t > 0.0 { s / t } else { 0.0 }).collect();
-        let species = bulk.species.into_iter().map(|s| SpeciesReport {
-            name: s.name,
-            sigma_t: s.sigma_t,
-            sigma_s: s.sigma_s,
-            g: s.g,
-        });
         MediumReport {
             medium: self.name.clone(),
             reduced_sigma_s: bulk.sigma_s.iter().zip(&bulk.g).map(|(s, g)| s * (1.0 - g)).collect(),
@@ -70,7 +64,7 @@ impl MediumStudy {
             g: bulk.g,
             sigma_t,
             albedo,
-            species: species.collect(),
+            species: bulk.species,
             quadrature_error: bulk.relative_error.max(fine.relative_error),
             column,
             depth: Colour::reflected(over(seen.reflectance)),
