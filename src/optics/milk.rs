@@ -176,7 +176,8 @@ const ABSORBANCE: [f64; 17] = [
 mod tests {
     use super::*;
 
-    /// The same formulas, worked out elsewhere: 20 MPa with 1.5 and 3.5 % of fat, and none.
+    /// The same formulas, worked out elsewhere with constants that may have more digits: 20 MPa with 1.5 and 3.5 % of fat, and
+    /// none. Half a unit of the last digit of 0.11622 is 3.0e-5 of r_P50 with 1.5 % of fat, and 0.77 times that of the mean.
     #[test]
     fn homogenised_globules_are_as_small_as_the_formulas_say() {
         for (fat, pressure, mean) in [
@@ -186,7 +187,7 @@ mod tests {
             (3.5, 0.0, 1.680_905_8),
         ] {
             let found = Milk { fat, pressure: Some(pressure), ..Milk::of_fat(fat) }.globules();
-            assert!((found.mean / mean - 1.0).abs() < 1e-6, "{fat} %, {pressure} MPa: {}", found.mean);
+            assert!((found.mean / mean - 1.0).abs() < 2.4e-5, "{fat} %, {pressure} MPa: {}", found.mean);
             assert!((found.spread / mean - 0.6).abs() < 1e-6);
         }
     }
