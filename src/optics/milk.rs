@@ -122,7 +122,7 @@ fn micelles() -> SizeDistribution {
 
 fn host() -> Host {
     // At the nodes of the absorption of water, 5 nm apart, and at those of the index.
-    let absorbed = |lambda: f64| water::absorption(lambda) + riboflavin(lambda);
+    let absorbed = |lambda: f64| water::absorption_at(lambda, water::MEASURED_AT, 0.0) + riboflavin(lambda);
     let wavelengths: Vec<f32> = water::wavelengths().map(|lambda| lambda as f32).collect();
     let values = water::wavelengths().map(|lambda| absorbed(lambda) as f32).collect();
     let k = std::array::from_fn(|i| {

@@ -111,6 +111,8 @@ pub struct MediumReport {
 pub struct SpeciesReport {
     /// Their name.
     pub name: String,
+    /// Their share of the whole volume.
+    pub volume_fraction: f64,
     /// Extinction in 1/m.
     pub sigma_t: Vec<f64>,
     /// Scattering in 1/m.

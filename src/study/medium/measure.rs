@@ -63,6 +63,7 @@ impl MediumStudy {
         let albedo = pairs.map(|(s, t)| if *t > 0.0 { s / t } else { 0.0 }).collect();
         let species = bulk.species.into_iter().map(|s| SpeciesReport {
             name: s.name,
+            volume_fraction: s.volume_fraction,
             sigma_t: s.sigma_t,
             sigma_s: s.sigma_s,
             g: s.g,

@@ -141,7 +141,8 @@ pub(super) fn read(table: &Table<'_>, value: &Value<'_>) -> Result<Model, SceneE
         )));
     }
     let phase = table.get("phase").map_or(Ok(ModelPhase::LorenzMie), |v| model_phase(&v))?;
-    let Contents { mixture, warnings } = kind.read(table)?;
+    let Contents { mixture, mut warnings } = kind.read(table)?;
+    warnings.extend(mixture.host.index.warning());
     // At no wavelength: whether the volumes and sizes can be.
     mixture.bulk(&[]).map_err(|error| value.invalid(error.to_string()))?;
     Ok(Model { kind, mixture, phase, warnings })
