@@ -329,7 +329,7 @@ const WRONG_NUMBERS: &[Wrong] = &[
     ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 9], value = [1] }", 2, 55, "1 numbers for 2 angles"),
     ("[media.a]\nphase = { kind = 'tabulated', angle = [0, 9], value = [0, 0] }", 2, 9, "leave no light to scatter"),
     ("[media.a]\nior = { table = 'water', temperature = 400 }", 2, 40, "write a temperature from -10 to 100"),
-    ("[media.a]\nior = { table = 'water', salinity = -1 }", 2, 37, "write a salinity from 0 to 100"),
+    ("[media.a]\nior = { table = 'water', salinity = -1 }", 2, 37, "write a salinity from 0 to 35"),
     ("[media.a]\nior = { wavelength = [400, 500], n = [1.3] }", 2, 38, "1 numbers for 2 wavelengths: write one for"),
     ("[media.a]\nior = { wavelength = [400], n = [1.3], k = [-1] }", 2, 45, "media.a.ior.k[0]: -1: write a number"),
     ("[media.a]\nabsorption = { wavelength = [500, 500], value = [1, 1] }", 2, 35,

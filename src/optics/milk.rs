@@ -25,7 +25,7 @@ use super::particles::{Host, Mixture, SizeDistribution, Species};
 use super::{RefractiveIndex, water};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cie::knots;
-use crate::spectrum::curve::interpolate;
+use crate::spectrum::curve::interpolate_even;
 
 /// Milk of a composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,8 +124,11 @@ fn micelles() -> SizeDistribution {
 
 fn host() -> Host {
     // At the nodes of the absorption of water, 5 nm apart, and at those of the index.
-    let absorbed = |lambda: f64| water::absorption(lambda) + riboflavin(lambda);
-    let k = NODES.map(|lambda| (absorbed(lambda) * lambda * 1e-9 / (4.0 * PI)) as f32);
+    let absorbed = |lambda: f64| water::absorption_at(lambda, water::MEASURED_AT, 0.0) + riboflavin(lambda);
+    let k = std::array::from_fn(|i| {
+        let lambda = 375.0 + 25.0 * i as f64;
+        (absorbed(lambda) * lambda * 1e-9 / (4.0 * PI)) as f32
+    });
     Host {
         index: RefractiveIndex::every_25_nm(WATER_N, k),
         absorption: Spectrum::tabulated(knots(), absorbed),
@@ -135,18 +138,11 @@ fn host() -> Host {
 
 /// Absorption of the riboflavin in milk in 1/m: 4 pi k / lambda of (7), linear between its nodes.
 fn riboflavin(lambda_nm: f64) -> f64 {
-    let absorbance = interpolate(&NODES, &ABSORBANCE, lambda_nm);
+    let absorbance = interpolate_even(&ABSORBANCE, [375.0, 25.0], lambda_nm);
     std::f64::consts::LN_10 * (0.17 / 376.3682) / (100.0 / 1.03) * (3.3e6 / 0.25654) * absorbance
 }
 
-/// Wavelengths in nm of the tables below.
-#[rustfmt::skip]
-const NODES: [f64; 17] = [
-    375.0, 400.0, 425.0, 450.0, 475.0, 500.0, 525.0, 550.0, 575.0,
-    600.0, 625.0, 650.0, 675.0, 700.0, 725.0, 750.0, 775.0,
-];
-
-/// `[HALE73]`
+/// From 375 nm in steps of 25 nm, as in the tables below `[HALE73]`.
 #[rustfmt::skip]
 const WATER_N: [f32; 17] = [
     1.341, 1.339, 1.338, 1.337, 1.336, 1.335, 1.334, 1.333, 1.333,

@@ -84,6 +84,18 @@ impl RefractiveIndex {
         }
     }
 
+    /// What is to be known of it: that it is extrapolated.
+    pub fn warning(&self) -> Option<String> {
+        let Self::Water { temperature, .. } = self else { return None };
+        let [least, greatest] = water::TEMPERATURE_RANGE;
+        (!(least..=greatest).contains(temperature)).then(|| {
+            format!(
+                "temperature = {temperature}: the index of water is known from {least} to {greatest} degrees Celsius; \
+                 beyond it is extrapolated"
+            )
+        })
+    }
+
     /// The absorption in 1/m that the imaginary part implies, at whole nanometres; `None` where there is none.
     pub fn absorption(&self) -> Option<Spectrum> {
         let sigma_a = |lambda: f64| match self {

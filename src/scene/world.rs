@@ -140,7 +140,7 @@ impl World {
     }
 
     fn still_parts(&self, inputs: &mut Inputs) -> Result<Parts, FrameError> {
-        let mut parts = Parts { warnings: self.model_warnings(), ..Parts::default() };
+        let mut parts = Parts { warnings: self.media_warnings(), ..Parts::default() };
         for surface in self.description.surfaces.iter().filter(|s| !has_place(&s.mesh)) {
             let path = self.description.directory.join(&surface.mesh);
             parts.add_surface(self, surface, inputs.mesh(&path, &VelocityName::Nothing)?, &path)?;
@@ -152,11 +152,11 @@ impl World {
         Ok(parts)
     }
 
-    /// What is to be known of the models of media.
-    fn model_warnings(&self) -> Vec<String> {
-        let models = self.description.media.iter().filter_map(|(name, m)| Some((name, m.model.as_ref()?)));
-        let told =
-            models.flat_map(|(name, m)| m.warnings.iter().map(move |text| format!("[media.{name}] {text}")));
+    /// What is to be known of what media are made of.
+    fn media_warnings(&self) -> Vec<String> {
+        let told = self.description.media.iter().flat_map(|(name, medium)| {
+            medium.warnings().into_iter().map(move |text| format!("[media.{name}] {text}"))
+        });
         told.collect()
     }
 

@@ -219,6 +219,14 @@ pub fn interpolate<T: Copy + Into<f64>>(wavelengths: &[T], values: &[T], lambda:
     }
 }
 
+/// Linear between the entries, two or more, of a table from `first` nm in equal steps, and constant beyond its ends.
+pub fn interpolate_even(table: &[f64], [first, step]: [f64; 2], lambda: f64) -> f64 {
+    let last = table.len() - 1;
+    let position = ((lambda - first) / step).clamp(0.0, last as f64);
+    let index = (position as usize).min(last - 1);
+    table[index] + (table[index + 1] - table[index]) * (position - index as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::lab::delta_e;
@@ -306,6 +314,11 @@ mod tests {
         assert_eq!(interpolate::<f32>(&[], &[], 500.0), 0.0);
         assert_eq!(interpolate(&[400.0, 500.0], &[2.0], 450.0), 2.0);
         assert_eq!(interpolate(&[500.0], &[2.0], 450.0), 2.0);
+        for (lambda, value) in
+            [(300.0, 1.0), (400.0, 1.0), (410.0, 2.0), (420.0, 3.0), (430.0, 1.0), (999.0, -1.0)]
+        {
+            assert_eq!(interpolate_even(&[1.0, 3.0, -1.0], [400.0, 20.0], lambda), value);
+        }
     }
 
     #[test]

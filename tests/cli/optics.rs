@@ -40,10 +40,24 @@ fn spheres_that_cannot_be_are_usage_errors() {
         ("1.5", "0", "must be above 0"),
         ("1.5", "-3", "must be above 0"),
         ("1.5", "nan", "must be above 0"),
-        ("1.5", "2e6", "geometrical optics"),
+        ("1.5", "inf", "and finite"),
+        ("1.5", "1e-30", "from 1e-20 on"),
+        ("1.5", "2e6", "the size parameter is 2000000 in the host and 3000000 by the sphere's own index"),
+        ("1.5", "2e6", "geometrical optics; take a smaller radius"),
     ] {
         let refused = floe(&folder, &["optics", "sphere", "--m", m, "--x", x]).ended(2);
         assert!(refused.stderr.contains(says) && refused.stdout.is_empty(), "{m} {x}: {refused:#?}");
+    }
+}
+
+/// Blanks around an index do no harm; a sphere of its host's index scatters nothing, and g is a number all the same.
+#[test]
+fn a_sphere_of_nothing_is_printed() {
+    let folder = Folder::new();
+    let found = floe(&folder, &["optics", "sphere", "--m", " 1+0i ", "--x", "1", "--json"]).ended(0);
+    let value = json(&found);
+    for key in ["qext", "qsca", "qback", "g"] {
+        assert_eq!(value[key].as_f64(), Some(0.0), "{value}");
     }
 }
 
@@ -78,6 +92,7 @@ fn a_preset_is_what_its_mixture_does() {
     }
     assert_eq!(value["species"].as_array().unwrap().len(), bulk.species.len());
     assert_same(&value["species"][1]["sigma_t"], &bulk.species[1].sigma_t);
+    assert_eq!(value["species"][1]["volume_fraction"].as_f64(), Some(water.algae));
     assert!(value.get("phase").is_none());
     // Clear blue water: what comes from its depth is bluer than white.
     assert!(value["depth"]["x"].as_f64().unwrap() < 0.25, "{value}");

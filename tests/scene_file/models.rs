@@ -2,6 +2,7 @@
 
 use floe::optics::RefractiveIndex;
 use floe::optics::particles::SizeDistribution;
+use floe::optics::phase::{HenyeyGreenstein, PhaseFunction};
 use floe::optics::water::natural::NaturalWater;
 use floe::scene::description::{DensityDescription, Model, ModelKind, ModelPhase};
 use floe::spectrum::Spectrum;
@@ -19,7 +20,7 @@ fn fractions(model: &Model) -> Vec<(&str, f64)> {
 #[test]
 fn waters_are_presets_with_what_is_said_otherwise() {
     let baltic = model("baltic");
-    assert_eq!((baltic.kind, baltic.phase), (ModelKind::NaturalWater, ModelPhase::LorenzMie));
+    assert_eq!((baltic.kind, &baltic.phase), (ModelKind::NaturalWater, &ModelPhase::LorenzMie));
     assert_eq!(fractions(&baltic), [("minerals", 5.429e-7), ("algae", 1.904e-6)]);
     let index = RefractiveIndex::Water { temperature: 10.0, salinity: 8.0 };
     assert_eq!(baltic.mixture.host.index, index);
@@ -43,6 +44,8 @@ fn ice_has_the_air_that_its_density_says() {
     assert!(name == "air" && (air - 0.025_827_0).abs() < 1e-7, "{name} {air}");
     let waterline = model("waterline");
     assert_eq!(waterline.phase, ModelPhase::HenyeyGreenstein);
+    let lobe = PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 });
+    assert_eq!(model("cream").phase, ModelPhase::Given(lobe.into()));
     assert_eq!(fractions(&waterline)[1], ("algae", 2e-6));
 }
 
@@ -84,12 +87,15 @@ fn formulas_out_of_their_range_are_told() {
     );
     let taken = parse(&cold.replace("-45", "-30")).unwrap().media["a"].model.clone().unwrap();
     assert_eq!(parse(cold).unwrap().media["a"].model.clone().unwrap().mixture, taken.mixture);
-    let dead_sea = warnings("[media.a]\nmodel = 'natural-water'\nsalinity = 40\ntemperature = 35");
-    assert_eq!(dead_sea.len(), 2);
-    assert!(
-        dead_sea[1].starts_with("salinity = 40: the index of water is known from 0 to 35"),
-        "{dead_sea:?}"
-    );
+    let hot = "temperature = 35: the index of water is known from 0 to 30 degrees Celsius; beyond it is extrapolated";
+    let chalk = "species = [{ ior = 1.5, volume_fraction = 0.1, sizes = { kind = 'table', radius_um = [1], number = [1] } }]";
+    for text in [
+        "model = 'natural-water'\ntemperature = 35",
+        "ior = { table = 'water', temperature = 35 }",
+        &format!("model = 'particles'\nior = {{ table = 'water', temperature = 35 }}\n{chalk}"),
+    ] {
+        assert_eq!(parse(&format!("[media.a]\n{text}")).unwrap().media["a"].warnings(), [hot], "{text}");
+    }
 }
 
 /// What is wrong with models.
@@ -110,7 +116,9 @@ const WRONG: &[Wrong] = &[
     ("[media.a]\nmodel = 'natural-water'\nalgae = -1e-6", 3, 9, "media.a.algae: -1e-6: write a share of the volume from 0 to 1"),
     ("[media.a]\nmodel = 'natural-water'\nmineral = nan", 3, 11, "write a share of the volume from 0 to 1"),
     ("[media.a]\nmodel = 'natural-water'\nmineral = 0.6\nalgae = 0.6", 2, 9, "the volume fractions of minerals, algae are 1.2 altogether"),
-    ("[media.a]\nmodel = 'natural-water'\nsalinity = 350", 3, 12, "write a salinity from 0 to 100 parts per thousand"),
+    ("[media.a]\nmodel = 'natural-water'\nsalinity = 36", 3, 12, "media.a.salinity: 36: write a salinity from 0 to 35 parts per thousand"),
+    ("[media.a]\nior = { table = 'water', salinity = 40 }", 2, 37, "write a salinity from 0 to 35 parts per thousand"),
+    ("[media.a]\nmodel = 'iceberg'\nsalinity = 101", 3, 12, "write a salinity from 0 to 100 parts per thousand"),
     ("[media.a]\nmodel = 'natural-water'\ntemperature = 400", 3, 15, "write a temperature from -10 to 100"),
     ("[media.a]\nmodel = 'natural-water'\ncdom = -1", 3, 8, "write an absorption at 440 nm from 0 to 1e6 1/m"),
     ("[media.a]\nmodel = 'natural-water'\nmolecular_scattering = 1", 3, 24, "write true or false"),

@@ -95,7 +95,7 @@ impl Request {
             Some(found) => found,
             None => {
                 let given = Box::new(medium.over_wavelength());
-                (Subject::Given { index: medium.ior.clone(), medium: given }, Vec::new())
+                (Subject::Given { index: medium.ior.clone(), medium: given }, medium.warnings())
             }
         };
         Ok(Self { name: title, subject, warnings, blame: Exit::Configuration })

@@ -28,6 +28,7 @@ struct SphereReport {
     qext: f64,
     qsca: f64,
     qback: f64,
+    /// 0 where nothing is scattered.
     g: f64,
 }
 
@@ -52,7 +53,7 @@ fn report(arguments: &SphereArguments) -> Result<SphereReport, SphereError> {
         qext: found.extinction,
         qsca: found.scattering,
         qback: found.backward,
-        g: found.asymmetry,
+        g: if found.scattering > 0.0 { found.asymmetry } else { 0.0 },
     })
 }
 
@@ -63,5 +64,5 @@ fn text(report: &SphereReport) -> String {
 }
 
 fn index(text: &str) -> Result<Complex64, String> {
-    text.parse().map_err(|_| format!("\"{text}\" is no complex number such as 1.33 or 1.5+0.1i"))
+    text.trim().parse().map_err(|_| format!("\"{text}\" is no complex number such as 1.33 or 1.5+0.1i"))
 }

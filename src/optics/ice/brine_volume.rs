@@ -53,8 +53,8 @@ pub enum IceError {
     },
     /// More brine than there is room for.
     #[error(
-        "ice of {salinity} parts per thousand and {density} kg/m^3 at {temperature} degrees would be brine for {brine:.3} \
-         and air for {air:.3} of its volume: nothing of it is frozen; write a lower temperature or salinity"
+        "ice of {salinity} parts per thousand and {density:.1} kg/m^3 at {temperature} degrees would be brine and air \
+         altogether: nothing of it is frozen; write a lower temperature or salinity"
     )]
     Melted {
         /// Parts per thousand.
@@ -63,10 +63,6 @@ pub enum IceError {
         density: f64,
         /// Degrees Celsius.
         temperature: f64,
-        /// v_brine.
-        brine: f64,
-        /// v_air.
-        air: f64,
     },
     /// Sizes of inclusions that cannot be.
     #[error(transparent)]
@@ -86,7 +82,7 @@ pub fn contents(temperature: f64, salinity: f64, density: f64) -> Result<IceCont
     let brine = rho * of_salt; // (1)
     let air = 1.0 - rho / pure + brine * f2; // (2)
     if !(brine >= 0.0 && brine + air.max(0.0) < 1.0) {
-        return Err(IceError::Melted { salinity, density, temperature, brine, air });
+        return Err(IceError::Melted { salinity, density, temperature });
     }
     if air < -ROUNDING {
         let densest = self::density(temperature, salinity, 0.0);

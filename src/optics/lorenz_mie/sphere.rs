@@ -2,6 +2,8 @@
 
 use num_complex::Complex64;
 
+/// Least 2 pi r / lambda: the squares of coefficients, which fall as its sixth power, have all digits there.
+const SMALLEST: f64 = 1e-20;
 /// Greatest |x|: there the coefficients take 64 MB.
 const LARGEST_HOST: f64 = 1e6;
 /// Greatest |y|: the recurrence that begins there takes seconds.
@@ -32,20 +34,22 @@ pub enum SphereError {
         /// The index.
         index: Complex64,
     },
-    /// A size that is not above 0, or not finite.
-    #[error("the size parameter is {size}: it must be above 0")]
+    /// A size that is next to 0 or below, or not finite.
+    #[error("the size parameter is {size:?}: it must be above 0, from {SMALLEST:e} on, and finite")]
     Size {
         /// 2 pi r / lambda.
         size: f64,
     },
     /// More terms than memory and time allow.
     #[error(
-        "the size parameter is {size}: spheres beyond {LARGEST_HOST:e} in their host, or {LARGEST_PARTICLE:e} by \
-             their own index, are a matter of geometrical optics"
+        "the size parameter is {host} in the host and {particle} by the sphere's own index: spheres beyond \
+             {LARGEST_HOST:e} and {LARGEST_PARTICLE:e} are a matter of geometrical optics; take a smaller radius"
     )]
     Large {
-        /// 2 pi r / lambda.
-        size: f64,
+        /// |x|.
+        host: f64,
+        /// |y|.
+        particle: f64,
     },
     /// Next to no light comes from one side of the sphere to the other.
     #[error(
@@ -69,12 +73,13 @@ impl Sphere {
                 return Err(SphereError::Index { of, index });
             }
         }
-        if !(size.is_finite() && size > 0.0) {
+        if !(size.is_finite() && size >= SMALLEST) {
             return Err(SphereError::Size { size });
         }
         let sphere = Self { particle, host, size };
-        if magnitude(sphere.x()) > LARGEST_HOST || magnitude(sphere.y()) > LARGEST_PARTICLE {
-            return Err(SphereError::Large { size });
+        let (host, particle) = (magnitude(sphere.x()), magnitude(sphere.y()));
+        if host > LARGEST_HOST || particle > LARGEST_PARTICLE {
+            return Err(SphereError::Large { host, particle });
         }
         if sphere.x().im > DARKEST_HOST {
             return Err(SphereError::BlackHost { depth: sphere.x().im });

@@ -46,6 +46,8 @@ pub struct Bulk {
 pub struct SpeciesBulk {
     /// Name of the species.
     pub name: String,
+    /// Its share of the whole volume.
+    pub volume_fraction: f64,
     /// Extinction in 1/m; may be negative in a host that absorbs.
     pub sigma_t: Vec<f64>,
     /// Scattering in 1/m.
@@ -112,6 +114,7 @@ impl Species {
     fn bulk(&self, sums: &[[Sums; 2]]) -> SpeciesBulk {
         SpeciesBulk {
             name: self.name.clone(),
+            volume_fraction: self.volume_fraction,
             sigma_t: sums.iter().map(|s| s[0].extinction).collect(),
             sigma_s: sums.iter().map(|s| s[0].scattering).collect(),
             g: sums.iter().map(|s| s[0].g()).collect(),

@@ -7,7 +7,7 @@ use super::quadrature::Quadrature;
 use super::{Mixture, Species};
 
 /// Another one whenever the same mixture leads to other numbers, or entries are written otherwise.
-const VERSION: &str = concat!("floe particles 1 ", env!("CARGO_PKG_VERSION"));
+const VERSION: &str = concat!("floe particles 2 ", env!("CARGO_PKG_VERSION"));
 
 impl Mixture {
     /// The SHA-256 of all that coefficients and phase functions at these wavelengths follow from.

@@ -5,24 +5,27 @@
 //! a_cdom = a_440 exp(-0.014 (lambda - 440))                                                           (2)
 //! ```
 //! a_w is that of pure water at 22 degrees Celsius: Pope and Fry `[POPE97]` from 380 to 725 nm, and from 730 nm Kou et al.
-//! `[KOU93]` as compiled in `[IOCCG18]`. Below 420 nm later measurements are lower (0.0046 1/m at 400 nm). The slopes of (1)
-//! are those of `[IOCCG18]`, S in parts per thousand: at 35 of them salt adds 30 % at 400 nm, 5 % at 460 nm and about 1 %
-//! above 500 nm; ten degrees add up to 4 % below 725 nm and 6 % near 740 nm. Below 400 nm, where nobody has measured
-//! what salt does, the slope at 400 nm goes on.
+//! `[KOU93]` as compiled in `[IOCCG18]`. Below 420 nm later measurements are lower (0.0046 1/m at 400 nm).
 //!
-//! (1) is not what `[PEGAU97]` has, whose figures the published tables of sea water go back to: there salt adds three times
-//! as much at 400 nm and takes a little away from 450 nm on. At 20 degrees and 35 parts per thousand (1) absorbs 24 %
-//! less than those at 400 nm and 12 % less at 425 nm, 15 % more at 450 nm, 10 % more at 475 nm, up to 6 % more from there
-//! to 550 nm, within 3 % of them to 725 nm, and 16 % more beyond, where their table is an older one
-//! (`tests/models/natural_waters.rs`).
+//! (1) is the host of the waters of `[FRISVAD07]`: the slopes are those of `[PEGAU97]`, S in parts per thousand, read in a program. At 20
+//! degrees and 35 parts per thousand it has the k of their table within 0.2 %, to which that is rounded
+//! (`tests/models/natural_waters.rs`). Beyond 725 nm it has the a_w which that table implies, an older one, 13 % below
+//! [`absorption`] at 750 nm. In the violet, salt is what is known least: here 35 parts add 63 % at 400 nm, by the slopes
+//! in `[IOCCG18]` 23 %, and from 450 to 550 nm they add a little there where here they take a little away.
 //!
 //! (2) is the usual form of the absorption of coloured dissolved organic matter, which makes fresh and coastal waters
 //! green to brown; its slope, in 1/nm, is the mean of many waters `[BRICAUD81]`.
 
 use crate::spectrum::cie::{KNOTS, interpolate};
+use crate::spectrum::curve::interpolate_even;
 
 /// The temperature in degrees Celsius at which pure water was measured.
 pub const MEASURED_AT: f64 = 22.0;
+
+/// First wavelength and step in nm of the slopes of (1).
+const SLOPES: [f64; 2] = [375.0, 25.0];
+/// The same of its far red.
+const RED: [f64; 2] = [725.0, 25.0];
 
 /// 1/nm, (2).
 const DISSOLVED_SLOPE: f64 = 0.014;
@@ -34,8 +37,10 @@ pub fn absorption(lambda_nm: f64) -> f64 {
 
 /// Absorption coefficient in 1/m of water of a temperature in degrees Celsius and a salinity in parts per thousand, (1).
 pub fn absorption_at(lambda_nm: f64, temperature: f64, salinity: f64) -> f64 {
-    let warmer = (temperature - MEASURED_AT) * interpolate(&WARMTH, lambda_nm);
-    (absorption(lambda_nm) + 1e-4 * (warmer + salinity * interpolate(&SALT, lambda_nm))).max(0.0)
+    let pure =
+        if lambda_nm <= RED[0] { absorption(lambda_nm) } else { interpolate_even(&FAR_RED, RED, lambda_nm) };
+    let slope = |table| interpolate_even(table, SLOPES, lambda_nm);
+    (pure + 1e-4 * ((temperature - MEASURED_AT) * slope(&WARMTH) + salinity * slope(&SALT))).max(0.0)
 }
 
 /// Absorption coefficient in 1/m of dissolved organic matter that has `at_440` of it at 440 nm, (2).
@@ -57,32 +62,22 @@ const PURE: [f64; KNOTS] = [
     2.78, 2.83, 2.85, 2.88, 2.86, 2.86, 2.82, 2.76, 2.69,
 ];
 
-/// da/dT in 1e-4 1/m per degree, from 380 nm in steps of 5 nm `[IOCCG18]`.
+/// 1/m, in steps of [`RED`]: that of `[POPE97]`, and what k of pure and of sea water in the tables of `[FRISVAD07]` imply,
+/// which are rounded to 0.3 %.
+const FAR_RED: [f64; 3] = [1.489, 2.465, 2.412];
+
+/// da/dT in 1e-4 1/m per degree, in steps of [`SLOPES`] `[PEGAU97]`.
 #[rustfmt::skip]
-const WARMTH: [f64; KNOTS] = [
-    0.0, 0.0, 0.0, -0.2, 0.1, 0.1, 0.0, 0.2, 0.0,
-    -0.1, -0.1, 0.0, 0.0, 0.1, 0.2, 0.1, 0.1, 0.0,
-    -0.1, -0.1, 0.0, -0.1, -0.1, 0.0, 0.1, 0.3, 0.8,
-    1.2, 1.1, 0.7, 0.4, 0.1, 0.0, -0.1, 0.0, -0.2,
-    -0.4, -0.6, -0.7, -0.6, 0.0, 1.2, 2.5, 4.5, 7.9,
-    10.3, 9.5, 7.2, 5.4, 3.0, 0.9, -0.5, -2.0, -3.0,
-    -3.0, -2.2, 0.8, 0.9, -0.4, -2.1, -4.0, -4.0, -4.3,
-    -4.1, -2.0, 1.7, 11.0, 27.3, 46.3, 65.8, 98.3, 148.5,
-    161.0, 137.2, 105.0, 74.4, 44.7, 18.6, -4.4, -24.5, -40.4,
+const WARMTH: [f64; 17] = [
+    1.0, 1.0, 0.5, 0.0, 0.0, 1.0, 2.0, 1.0, 2.0,
+    10.0, 5.0, 0.5, 1.0, 2.0, 65.0, 106.0, 106.0,
 ];
 
-/// da/dS in 1e-4 1/m per part in a thousand, from 380 nm in steps of 5 nm `[IOCCG18]`; the first four are that of 400 nm.
+/// da/dS in 1e-4 1/m per part in a thousand, in steps of [`SLOPES`] `[PEGAU97]`.
 #[rustfmt::skip]
-const SALT: [f64; KNOTS] = [
-    0.43, 0.43, 0.43, 0.43, 0.43, 0.37, 0.36, 0.34, 0.32,
-    0.28, 0.26, 0.25, 0.22, 0.19, 0.17, 0.16, 0.14, 0.13,
-    0.11, 0.09, 0.08, 0.06, 0.06, 0.05, 0.05, 0.04, 0.02,
-    0.08, 0.13, 0.14, 0.15, 0.15, 0.15, 0.13, 0.13, 0.16,
-    0.16, 0.15, 0.13, 0.1, 0.04, 0.01, 0.03, -0.02, -0.16,
-    0.43, 0.75, 0.83, 0.84, 0.8, 0.77, 0.73, 0.7, 0.66,
-    0.6, 0.34, 0.41, 0.63, 0.62, 0.46, 0.25, -0.02, -0.34,
-    -0.7, -1.16, -1.4, -1.8, -1.9, -1.8, -2.1, -4.4, -3.7,
-    1.8, 4.7, 6.5, 6.8, 6.6, 6.0, 5.3, 4.5, 3.6,
+const SALT: [f64; 17] = [
+    1.2, 1.2, 0.55, -0.2, -0.2, -0.2, -0.25, -0.3, -0.2,
+    -0.15, -0.1, 0.0, -0.2, -1.7, -0.1, 6.4, 6.4,
 ];
 
 #[cfg(test)]
@@ -111,12 +106,23 @@ mod tests {
         assert_eq!(absorption(900.0), 2.69);
     }
 
-    /// Warming from 22 to 32 degrees adds 10 x 65.8e-4 at 725 nm; 35 parts of salt add 35 x 0.43e-4 at 400 nm.
+    /// Warming from 22 to 32 degrees adds 10 x 65e-4 at 725 nm; 35 parts of salt add 35 x 1.2e-4 at 400 nm.
     #[test]
     fn warmth_and_salt_add_what_the_slopes_say() {
-        assert!((absorption_at(725.0, 32.0, 0.0) - (1.489 + 0.0658)).abs() < 1e-12);
-        assert!((absorption_at(400.0, 22.0, 35.0) - (0.00663 + 0.001_505)).abs() < 1e-12);
-        assert_eq!(absorption_at(550.0, 22.0, 0.0), absorption(550.0));
+        assert!((absorption_at(725.0, 32.0, 0.0) - (1.489 + 0.065)).abs() < 1e-12);
+        assert!((absorption_at(400.0, 22.0, 35.0) - (0.00663 + 0.0042)).abs() < 1e-12);
+        assert!((absorption_at(775.0, 22.0, 0.0) - 2.412).abs() < 1e-12);
+    }
+
+    /// However it is cooled or salted, no water shines.
+    #[test]
+    fn water_within_its_range_absorbs() {
+        for lambda in (380..=780).map(f64::from) {
+            assert!(absorption_at(lambda, MEASURED_AT, 0.0) == absorption(lambda) || lambda > 725.0);
+            for (temperature, salinity) in [(0.0, 0.0), (30.0, 0.0), (0.0, 35.0), (30.0, 35.0)] {
+                assert!(absorption_at(lambda, temperature, salinity) > 1e-3, "{lambda} nm");
+            }
+        }
     }
 
     #[test]

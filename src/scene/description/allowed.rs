@@ -1,6 +1,7 @@
 //! Which numbers a key takes.
 
 use crate::optics::milk::PRESSURE_RANGE as MILK_PRESSURE;
+use crate::optics::water::SALINITY_RANGE as WATER_SALINITY;
 
 /// A range of numbers with the words that ask for one of them.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +101,13 @@ impl Allowed {
     pub const SIZE_EXPONENT: Self = Self::closed(-20.0, 20.0, "an exponent from -20 to 20");
     /// Standard deviation of the logarithm of a radius.
     pub const SIZE_DEVIATION: Self = Self::closed(1e-3, 2.0, "a deviation of ln r from 0.001 to 2");
-    /// Salinity in parts per thousand.
+    /// Salinity in parts per thousand of water, whose index is known for these.
+    pub const SALINITY_OF_WATER: Self = Self::closed(
+        WATER_SALINITY[0] as f64,
+        WATER_SALINITY[1] as f64,
+        "a salinity from 0 to 35 parts per thousand",
+    );
+    /// Salinity of ice in parts per thousand.
     pub const SALINITY: Self = Self::closed(0.0, 100.0, "a salinity from 0 to 100 parts per thousand");
     /// Exposure in stops.
     pub const STOPS: Self = Self::closed(-100.0, 100.0, "a number of stops from -100 to 100");

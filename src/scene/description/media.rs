@@ -109,6 +109,14 @@ impl MediumDescription {
         AbsorptionDescription::or_implied(self.absorption.as_ref(), &self.ior)
     }
 
+    /// What a user should know about it: formulas outside of their range.
+    pub fn warnings(&self) -> Vec<String> {
+        match &self.model {
+            Some(model) => model.warnings.clone(),
+            None => self.ior.warning().into_iter().collect(),
+        }
+    }
+
     /// Whether anything is absorbed.
     fn absorbs(&self) -> bool {
         match (&self.model, &self.extinction) {
@@ -162,7 +170,7 @@ pub(super) fn ior(value: &Value<'_>) -> Result<RefractiveIndex, SceneError> {
             let number = |key, allowed, default| table.get(key).map_or(Ok(default), |v| v.number32(allowed));
             RefractiveIndex::Water {
                 temperature: number("temperature", &Allowed::CELSIUS_OF_WATER, SEA_WATER.0)?,
-                salinity: number("salinity", &Allowed::SALINITY, SEA_WATER.1)?,
+                salinity: number("salinity", &Allowed::SALINITY_OF_WATER, SEA_WATER.1)?,
             }
         }
         Some(Substance::Ice) => RefractiveIndex::Ice,

@@ -26,7 +26,7 @@ fn study(name: &str, subject: Subject, wavelengths: &[f64]) -> MediumStudy {
 }
 
 fn of_mixture(wavelengths: &[f64]) -> MediumReport {
-    let subject = Subject::Mixture { mixture: mixture(), one_lobe: false };
+    let subject = Subject::Mixture { mixture: mixture(), phase: ModelPhase::LorenzMie };
     study("<muddy> & \"clear\"", subject, wavelengths).run(&Cache::off()).unwrap()
 }
 

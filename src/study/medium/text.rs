@@ -32,6 +32,15 @@ fn cell(value: f64) -> String {
     format!("{shown:>11}")
 }
 
+/// A ratio in at most eight letters.
+fn quotient(ratio: f64) -> String {
+    match ratio.abs() {
+        size if !size.is_finite() => "-".into(),
+        size if size == 0.0 || (1e-3..999.0).contains(&size) => format!("{ratio:.4}"),
+        _ => format!("{ratio:.2e}"),
+    }
+}
+
 fn species(report: &MediumReport) -> String {
     if report.species.is_empty() {
         return String::new();
@@ -42,6 +51,10 @@ fn species(report: &MediumReport) -> String {
         // Longer names would run into each other.
         let name: String = species.name.chars().take(width - 1).collect();
         text += &format!("{name:>width$}");
+    });
+    text += "\n      ";
+    report.species.iter().for_each(|species| {
+        text += &format!("{:>width$}", format!("{:.4e} of the volume", species.volume_fraction));
     });
     let _ = write!(text, "\n{:>6}", "nm");
     for _ in &report.species {
@@ -102,9 +115,7 @@ pub fn of_both(comparison: &Comparison) -> String {
             let _ = write!(text, "\n{lambda:>6}");
             for quantity in quantities {
                 let [of_a, of_b] = [a, b].map(|report| (quantity.values)(report)[i]);
-                let ratio = of_b / of_a;
-                let shown = if ratio.is_finite() { format!("{ratio:.4}") } else { "-".into() };
-                text += &format!(" {}{}{shown:>9}", cell(of_a), cell(of_b));
+                text += &format!(" {}{}{:>9}", cell(of_a), cell(of_b), quotient(of_b / of_a));
             }
         }
         text += "\n\n";
@@ -113,4 +124,24 @@ pub fn of_both(comparison: &Comparison) -> String {
         text += &format!("{name}: {}{}\n", report.medium, colours(report));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_keep_to_their_column() {
+        for (ratio, shown) in [
+            (1.25, "1.2500"),
+            (0.0, "0.0000"),
+            (998.99999, "999.0000"),
+            (1412.5671, "1.41e3"),
+            (3.2e-7, "3.20e-7"),
+            (f64::NAN, "-"),
+            (f64::INFINITY, "-"),
+        ] {
+            assert_eq!(quotient(ratio), shown);
+        }
+    }
 }

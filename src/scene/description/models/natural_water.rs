@@ -5,7 +5,6 @@ use super::super::document::Table;
 use super::super::error::SceneError;
 use super::{Contents, preset};
 use crate::optics::water::natural::{NaturalWater, PRESETS};
-use crate::optics::water::{SALINITY_RANGE, TEMPERATURE_RANGE};
 
 pub(super) fn read(table: &Table<'_>) -> Result<Contents, SceneError> {
     let base = preset(table, &PRESETS, NaturalWater::SEA)?;
@@ -13,25 +12,12 @@ pub(super) fn read(table: &Table<'_>) -> Result<Contents, SceneError> {
     let molecules = table.get("molecular_scattering");
     let water = NaturalWater {
         temperature: number("temperature", &Allowed::CELSIUS_OF_WATER, base.temperature)?,
-        salinity: number("salinity", &Allowed::SALINITY, base.salinity)?,
+        salinity: number("salinity", &Allowed::SALINITY_OF_WATER, base.salinity)?,
         mineral: number("mineral", &Allowed::VOLUME_FRACTION, base.mineral)?,
         algae: number("algae", &Allowed::VOLUME_FRACTION, base.algae)?,
         rock_flour: number("rock_flour", &Allowed::VOLUME_FRACTION, base.rock_flour)?,
         dissolved: number("cdom", &Allowed::ABSORBED_AT_440, base.dissolved)?,
         molecular_scattering: molecules.map_or(Ok(base.molecular_scattering), |v| v.boolean())?,
     };
-    let extrapolated = |what: &str, value: f64, [least, greatest]: [f32; 2], unit: &str| {
-        let inside = f64::from(least) <= value && value <= f64::from(greatest);
-        (!inside).then(|| {
-            format!(
-                "{what} = {value}: the index of water is known from {least} to {greatest} {unit}; \
-                 beyond it is extrapolated"
-            )
-        })
-    };
-    let warnings = [
-        extrapolated("temperature", water.temperature, TEMPERATURE_RANGE, "degrees Celsius"),
-        extrapolated("salinity", water.salinity, SALINITY_RANGE, "parts per thousand"),
-    ];
-    Ok(Contents { mixture: water.mixture(), warnings: warnings.into_iter().flatten().collect() })
+    Ok(Contents { mixture: water.mixture(), warnings: Vec::new() })
 }
