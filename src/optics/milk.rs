@@ -184,7 +184,7 @@ mod tests {
         ] {
             let found = Milk { fat, pressure: Some(pressure), ..Milk::of_fat(fat) }.globules();
             assert!((found.mean / mean - 1.0).abs() < 2.4e-5, "{fat} %, {pressure} MPa: {}", found.mean);
-            assert!((found.spread / mean - 0.6).abs() < 1e-6);
+            assert!((found.spread / found.mean - 0.6).abs() < 1e-6);
         }
     }
 
