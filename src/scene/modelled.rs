@@ -13,12 +13,17 @@ use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum, Wavelengths};
 /// Absorption and scattering in 1/m, and whereto is scattered.
 pub(super) fn light_in(model: &Model, mode: LaneMode) -> Result<([LaneCurve; 2], MediumPhase), MixtureError> {
     let Scattering { bulk, phase } = model.mixture.scattering(&Cache::of_user())?;
-    let spectral = match model.phase {
-        ModelPhase::LorenzMie => SpectralPhase::tabulated(&phase.wavelengths, &phase.angles, &phase.values),
-        ModelPhase::HenyeyGreenstein => SpectralPhase::henyey_greenstein(table(&bulk.wavelengths, &bulk.g)),
+    let phase = match &model.phase {
+        ModelPhase::LorenzMie => {
+            SpectralPhase::tabulated(&phase.wavelengths, &phase.angles, &phase.values).map(MediumPhase::from)
+        }
+        ModelPhase::HenyeyGreenstein => {
+            SpectralPhase::henyey_greenstein(table(&bulk.wavelengths, &bulk.g)).map(MediumPhase::from)
+        }
+        ModelPhase::Given(phase) => Some(phase.clone()),
     };
     // Where nothing scatters there is no phase function, and none is needed.
-    let phase = spectral.map_or_else(|| PhaseFunction::Isotropic(Isotropic).into(), MediumPhase::from);
+    let phase = phase.unwrap_or_else(|| PhaseFunction::Isotropic(Isotropic).into());
     let curves = [absorbed(model, &bulk), table(&bulk.wavelengths, &bulk.sigma_s)];
     Ok((curves.map(|curve| curve.prepare(Role::Coefficient, mode)), phase))
 }

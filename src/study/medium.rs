@@ -12,8 +12,8 @@ pub mod colour;
 pub mod comparison;
 pub mod csv;
 pub mod diagrams;
-pub mod measure;
-pub mod phase;
+mod measure;
+mod phase;
 pub mod quantity;
 pub mod text;
 
@@ -49,8 +49,8 @@ pub enum Subject {
     Mixture {
         /// The host and its particles.
         mixture: Mixture,
-        /// Whether one lobe of the computed mean cosine takes the place of the phase function.
-        one_lobe: bool,
+        /// Which phase function it has.
+        phase: ModelPhase,
     },
     /// As given, over wavelength.
     Given {
@@ -136,8 +136,7 @@ impl Subject {
     /// What a model computes, with what is to be known of it; `None` for a medium without a model.
     pub fn of_model(medium: &MediumDescription) -> Option<(Self, Vec<String>)> {
         let Model { mixture, phase, warnings, .. } = medium.model.clone()?;
-        let one_lobe = phase == ModelPhase::HenyeyGreenstein;
-        Some((Self::Mixture { mixture, one_lobe }, warnings))
+        Some((Self::Mixture { mixture, phase }, warnings))
     }
 }
 

@@ -24,8 +24,16 @@ pub struct Rendered {
 
 /// Opens a scene file and assembles its first frame.
 pub fn prepare(file: &Path) -> Prepared {
+    prepare_task(file, 0)
+}
+
+/// As [`prepare`], of the frame that is so many after the first.
+///
+/// # Panics
+/// As [`prepare`], and when there are not so many.
+pub fn prepare_task(file: &Path, index: usize) -> Prepared {
     let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-    let task = job.tasks().swap_remove(0);
+    let task = job.tasks().swap_remove(index);
     let meshes = task.read(&job.world).unwrap_or_else(|e| panic!("{e}")).meshes;
     let assembled = job.world.assemble(task.number, meshes, None).unwrap_or_else(|e| panic!("{e}"));
     let mut sampling = Sampling::new(&job.world.description.render);

@@ -2,6 +2,7 @@
 
 use floe::optics::RefractiveIndex;
 use floe::optics::particles::SizeDistribution;
+use floe::optics::phase::{HenyeyGreenstein, PhaseFunction};
 use floe::optics::water::natural::NaturalWater;
 use floe::scene::description::{DensityDescription, Model, ModelKind, ModelPhase};
 use floe::spectrum::Spectrum;
@@ -19,7 +20,7 @@ fn fractions(model: &Model) -> Vec<(&str, f64)> {
 #[test]
 fn waters_are_presets_with_what_is_said_otherwise() {
     let baltic = model("baltic");
-    assert_eq!((baltic.kind, baltic.phase), (ModelKind::NaturalWater, ModelPhase::LorenzMie));
+    assert_eq!((baltic.kind, &baltic.phase), (ModelKind::NaturalWater, &ModelPhase::LorenzMie));
     assert_eq!(fractions(&baltic), [("minerals", 5.429e-7), ("algae", 1.904e-6)]);
     let index = RefractiveIndex::Water { temperature: 10.0, salinity: 8.0 };
     assert_eq!(baltic.mixture.host.index, index);
@@ -43,6 +44,8 @@ fn ice_has_the_air_that_its_density_says() {
     assert!(name == "air" && (air - 0.025_827_0).abs() < 1e-7, "{name} {air}");
     let waterline = model("waterline");
     assert_eq!(waterline.phase, ModelPhase::HenyeyGreenstein);
+    let lobe = PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 });
+    assert_eq!(model("cream").phase, ModelPhase::Given(lobe.into()));
     assert_eq!(fractions(&waterline)[1], ("algae", 2e-6));
 }
 

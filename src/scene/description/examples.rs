@@ -366,6 +366,7 @@ homogenisation_pressure = 20
 [media.cream]
 model = "milk"
 fat = 30
+phase = { kind = "henyey-greenstein", g = 0.9 }
 
 [media.paint]
 model = "particles"

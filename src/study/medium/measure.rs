@@ -6,6 +6,7 @@ use crate::optics::apparent::{backscattered_share, diffuse_attenuation, reflecta
 use crate::optics::half_space::h_function::HFunction;
 use crate::optics::medium::Medium;
 use crate::optics::particles::{Bulk, Cache, EnsemblePhase, MixtureError, Scattering};
+use crate::scene::description::ModelPhase;
 use crate::spectrum::{LaneCurve, Wavelengths};
 
 /// Wavelengths in nm at which colours are computed where nothing else says them; what lies between is linear.
@@ -18,13 +19,23 @@ impl MediumStudy {
     /// What is wrong with a mixture.
     pub fn run(&self, cache: &Cache) -> Result<MediumReport, MixtureError> {
         let (fine, bulk, phase, was_kept) = match &self.subject {
-            Subject::Mixture { mixture, one_lobe } => {
-                let (Scattering { bulk: fine, phase }, was_kept) = mixture.scattering_kept(cache)?;
-                let bulk = match chosen(&fine, &self.wavelengths) {
+            Subject::Mixture { mixture, phase } => {
+                let (Scattering { bulk: mut fine, phase: computed }, was_kept) =
+                    mixture.scattering_kept(cache)?;
+                let mut bulk = match chosen(&fine, &self.wavelengths) {
                     Some(bulk) => bulk,
                     None => mixture.bulk(&self.wavelengths)?,
                 };
-                let phase = if *one_lobe { phase::one_lobe(&fine.wavelengths, &fine.g) } else { phase };
+                let phase = match phase {
+                    ModelPhase::LorenzMie => computed,
+                    ModelPhase::HenyeyGreenstein => phase::one_lobe(&fine.wavelengths, &fine.g),
+                    ModelPhase::Given(given) => {
+                        for bulk in [&mut fine, &mut bulk] {
+                            bulk.g = over(&given.mean_cosine(), &bulk.wavelengths);
+                        }
+                        phase::tabulated(given)
+                    }
+                };
                 (fine, bulk, phase, was_kept)
             }
             Subject::Given { index, medium } => {
@@ -124,13 +135,7 @@ fn chosen(bulk: &Bulk, wavelengths: &[f64]) -> Option<Bulk> {
 
 /// A medium whose coefficients are given, as rays meet it.
 fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk {
-    let over = |curve: &LaneCurve| {
-        let at = |lambda: &f64| {
-            let path = Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
-            f64::from(curve.lanes(&path).x)
-        };
-        wavelengths.iter().map(at).collect()
-    };
+    let over = |curve: &LaneCurve| over(curve, wavelengths);
     Bulk {
         wavelengths: wavelengths.to_vec(),
         n: wavelengths.iter().map(|lambda| index.n(*lambda)).collect(),
@@ -140,6 +145,14 @@ fn given(index: &RefractiveIndex, medium: &Medium, wavelengths: &[f64]) -> Bulk 
         species: Vec::new(),
         relative_error: 0.0,
     }
+}
+
+fn over(curve: &LaneCurve, wavelengths: &[f64]) -> Vec<f64> {
+    let at = |lambda: &f64| {
+        let path = Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
+        f64::from(curve.lanes(&path).x)
+    };
+    wavelengths.iter().map(at).collect()
 }
 
 fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -26,7 +26,7 @@ fn study(name: &str, subject: Subject, wavelengths: &[f64]) -> MediumStudy {
 }
 
 fn of_mixture(wavelengths: &[f64]) -> MediumReport {
-    let subject = Subject::Mixture { mixture: mixture(), one_lobe: false };
+    let subject = Subject::Mixture { mixture: mixture(), phase: ModelPhase::LorenzMie };
     study("<muddy> & \"clear\"", subject, wavelengths).run(&Cache::off()).unwrap()
 }
 
@@ -35,6 +35,7 @@ fn given(wavelengths: &[f64]) -> MediumReport {
     let medium = Medium {
         name: "sea".into(),
         n: 1.33,
+        index: LaneCurve::Constant(1.33),
         sigma_a: LaneCurve::sampled(|lambda| if lambda < 500.0 { 0.02 } else { 0.3 }),
         sigma_s: LaneCurve::Constant(0.5),
         emission: LaneCurve::Constant(0.0),

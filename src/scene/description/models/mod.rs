@@ -9,8 +9,10 @@ mod particles;
 
 use super::document::Table;
 use super::error::SceneError;
+use super::phase;
 use super::value::Value;
 use crate::optics::particles::Mixture;
+use crate::optics::phase::MediumPhase;
 use crate::optics::{ice, water};
 
 /// A medium that is computed from what is in it.
@@ -40,12 +42,14 @@ pub enum ModelKind {
 }
 
 /// `phase` of a medium with a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ModelPhase {
     /// As computed, at each wavelength.
     LorenzMie,
     /// One lobe with the computed mean cosine, at each wavelength.
     HenyeyGreenstein,
+    /// Another in its place.
+    Given(MediumPhase),
 }
 
 impl ModelKind {
@@ -116,8 +120,16 @@ const KINDS: [(&str, ModelKind); 4] = [
     ("particles", ModelKind::Particles),
 ];
 
-const PHASES: [(&str, ModelPhase); 2] =
-    [("lorenz-mie", ModelPhase::LorenzMie), ("henyey-greenstein", ModelPhase::HenyeyGreenstein)];
+/// Computed phase functions, and whether one lobe stands for them.
+const COMPUTED: [(&str, bool); 2] = [("lorenz-mie", false), ("henyey-greenstein", true)];
+
+/// How it is computed, or a phase function as other media have it.
+fn model_phase(value: &Value<'_>) -> Result<ModelPhase, SceneError> {
+    if value.is_table() {
+        return phase::read(value).map(ModelPhase::Given);
+    }
+    Ok(if value.choice(&COMPUTED)? { ModelPhase::HenyeyGreenstein } else { ModelPhase::LorenzMie })
+}
 
 /// Reads the model of the medium in `table`, whose key `model` has this value.
 pub(super) fn read(table: &Table<'_>, value: &Value<'_>) -> Result<Model, SceneError> {
@@ -128,7 +140,7 @@ pub(super) fn read(table: &Table<'_>, value: &Value<'_>) -> Result<Model, SceneE
             kind.name()
         )));
     }
-    let phase = table.get("phase").map_or(Ok(ModelPhase::LorenzMie), |v| v.choice(&PHASES))?;
+    let phase = table.get("phase").map_or(Ok(ModelPhase::LorenzMie), |v| model_phase(&v))?;
     let Contents { mixture, mut warnings } = kind.read(table)?;
     warnings.extend(mixture.host.index.warning());
     // At no wavelength: whether the volumes and sizes can be.
