@@ -11,7 +11,7 @@
 //!                   order)      label,   refit,   Fresnel, sun,    frame,    along a      error, EXR,
 //!                               check)   trace)   sky)             needs)    path)        PNG)
 //!                            driver owns the loop: frames, threads, tiles, ledger
-//!                            movie shows what was rendered; study renders in several ways and compares
+//!                            movie shows what was rendered; study measures: pictures, errors, media
 //! ```
 //! Each stage uses itself and the stages before it, never one after. [`geometry`], [`sampling`] and [`spectrum`]
 //! are foundations under all.

@@ -5,7 +5,7 @@ use std::path::Path;
 use floe::light::Picture;
 use floe::mesh::{self, Format, RawMesh, Region, Syntax, VelocityName};
 use floe::optics::volume;
-use floe::scene::description::SceneDescription;
+use floe::scene::description::{Model, SceneDescription};
 use floe::sequence::{FrameNumber, FrameSelection, check_output_pattern, frame_path};
 
 /// A mesh is refused, or it is what `RawMesh` promises and can be made fit for rays.
@@ -69,11 +69,24 @@ pub fn picture(bytes: &[u8]) {
     }
 }
 
-/// A scene is refused with words, or is one.
+/// A scene is refused with words, or is one whose media can be computed.
 pub fn scene(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    if let Err(error) = SceneDescription::parse(text, Path::new("fuzzed/scene.toml")) {
-        assert!(!error.to_string().is_empty());
+    match SceneDescription::parse(text, Path::new("fuzzed/scene.toml")) {
+        Ok(scene) => scene.media.values().filter_map(|medium| medium.model.as_ref()).for_each(model),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
+/// What is in a medium is refused with words, or scatters and absorbs.
+fn model(model: &Model) {
+    match model.mixture.bulk(&[550.0]) {
+        Ok(bulk) => {
+            let coefficients = bulk.sigma_a.iter().chain(&bulk.sigma_s);
+            assert!(coefficients.into_iter().all(|sigma| sigma.is_finite() && *sigma >= 0.0), "{model:?}");
+            assert!(bulk.g.iter().all(|g| g.abs() <= 1.0), "{model:?}");
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
 

@@ -81,7 +81,7 @@ const WATER_ABSORPTION: [(f32, f32); 12] = [
 mod tests {
     use super::*;
     use crate::spectrum::Role;
-    use crate::spectrum::luminance::luminance_f64;
+    use crate::spectrum::luminance::{LUMENS_PER_WATT, luminance_f64};
 
     fn values(spectrum: &Spectrum) -> &[f32] {
         match spectrum {
@@ -121,7 +121,7 @@ mod tests {
     fn illuminance_falls_with_haze_and_with_the_sun() {
         let rgb =
             |turbidity, elevation| direct_sunlight(turbidity, elevation).to_rgb(Role::Illuminant).as_dvec3();
-        let lux = |turbidity, elevation| 683.0 * luminance_f64(rgb(turbidity, elevation));
+        let lux = |turbidity, elevation| LUMENS_PER_WATT * luminance_f64(rgb(turbidity, elevation));
         assert!((90e3..110e3).contains(&lux(2.0, 60.0)) && (90e3..110e3).contains(&lux(3.0, 60.0)));
         for (high, low) in [(90.0, 45.0), (45.0, 20.0), (20.0, 5.0), (5.0, 0.0)] {
             let (above, below) = (rgb(3.0, high), rgb(3.0, low));

@@ -222,7 +222,7 @@ mod tests {
 
     fn value(spectrum: &Spectrum, lambda: f32) -> f64 {
         let lanes = spectrum.prepare(Role::Illuminant, LaneMode::Spectral);
-        f64::from(lanes.lanes(&Wavelengths { lambda: [lambda; 4], pdf: [1.0; 4] }).x)
+        f64::from(lanes.lanes(&Wavelengths::single(lambda)).x)
     }
 
     /// Rows of equal height on the axis are of equal solid angle (Archimedes). 300 x 600 of them miss the fall of the

@@ -1,4 +1,5 @@
-//! Where light comes from: the sky, the sun's disc, emitting triangles.
+//! Where light comes from: the sky, the sun's disc, emitting triangles. Where the sun stands at a time and a place is
+//! [`sun_position`].
 //!
 //! Each light is found by chance (a path that runs into it) and, where that pays, by next-event estimation; the
 //! balance heuristic weights the two `[VEACH97 section 9.2.2]`.

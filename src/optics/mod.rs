@@ -1,8 +1,10 @@
 //! What light meets: refractive indices, surfaces between media, and what is in the media.
 //!
-//! Water and ice come with measured tables ([`water`], [`ice`]), natural waters, icebergs and [`milk`] with what is in
-//! them, as [`particles`] need it; an index from them or from a scene file is a
-//! [`RefractiveIndex`]. Smooth boundaries reflect after Fresnel ([`fresnel`]) and bend after Snell ([`refraction`]).
+//! [`water`], [`ice`] and [`milk`] say what these are made of: measured tables of the pure matter, and what natural waters,
+//! icebergs and milk carry. By Lorenz-Mie theory ([`lorenz_mie`]) [`particles`] makes coefficients and phase functions of
+//! that, and [`apparent`] what a deep body of it looks like. A [`medium`] has them, given or computed, with its phase
+//! function ([`phase`]) and [`density`]. An index over wavelength is a [`RefractiveIndex`]. Smooth boundaries reflect after
+//! Fresnel ([`fresnel`]) and bend after Snell ([`refraction`]).
 //!
 //! Indices are n + i k with k >= 0 absorbing. `eta_t_over_i` is the index on the far side over the index on the side
 //! that the light, or the path, comes from. Coefficients are in 1/m, wavelengths in nm in vacuum.

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use super::{ice, water};
 use crate::spectrum::Spectrum;
-use crate::spectrum::cie::{NANOMETRES, nanometre};
+use crate::spectrum::cie::nanometres;
 use crate::spectrum::curve::interpolate;
 
 /// The wavelength in nm (sodium D) at whose index rays reflect and bend.
@@ -42,6 +42,12 @@ pub enum RefractiveIndex {
 }
 
 impl RefractiveIndex {
+    /// Of n and k from 375 to 775 nm in steps of 25 nm.
+    pub(super) fn every_25_nm(n: [f32; 17], k: [f32; 17]) -> Self {
+        let wavelengths = (0..n.len()).map(|i| 375.0 + 25.0 * i as f32).collect();
+        Self::Table { wavelengths, n: n.to_vec(), k: k.to_vec() }
+    }
+
     /// Real part at `lambda_nm`.
     pub fn n(&self, lambda_nm: f64) -> f64 {
         match self {
@@ -96,9 +102,8 @@ impl RefractiveIndex {
             Self::Water { .. } => water::absorption(lambda),
             _ => 4.0 * PI * self.k(lambda) / (lambda * 1e-9),
         };
-        let wavelengths: Vec<f32> = (0..NANOMETRES).map(|i| nanometre(i) as f32).collect();
-        let values: Vec<f32> = (0..NANOMETRES).map(|i| sigma_a(nanometre(i)) as f32).collect();
-        values.iter().any(|value| *value > 0.0).then_some(Spectrum::Table { wavelengths, values })
+        let absorption = Spectrum::tabulated(nanometres(), sigma_a);
+        (!absorption.is_zero()).then_some(absorption)
     }
 }
 

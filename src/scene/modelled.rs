@@ -6,7 +6,7 @@
 use super::description::{Model, ModelPhase};
 use crate::optics::particles::{Bulk, Cache, MixtureError, Scattering};
 use crate::optics::phase::{Isotropic, MediumPhase, PhaseFunction, SpectralPhase};
-use crate::spectrum::cie::{NANOMETRES, nanometre};
+use crate::spectrum::cie::nanometres;
 use crate::spectrum::curve::interpolate;
 use crate::spectrum::{LaneCurve, LaneMode, Role, Spectrum, Wavelengths};
 
@@ -32,23 +32,14 @@ pub(super) fn light_in(model: &Model, mode: LaneMode) -> Result<([LaneCurve; 2],
 fn absorbed(model: &Model, bulk: &Bulk) -> Spectrum {
     let of_species = |i: usize| bulk.species.iter().map(|s| s.sigma_t[i] - s.sigma_s[i]).sum::<f64>();
     let particles: Vec<f64> = (0..bulk.wavelengths.len()).map(of_species).collect();
-    let (lambda, particles) = (single(&bulk.wavelengths), single(&particles));
     let host = model.mixture.host.absorption.prepare(Role::Coefficient, LaneMode::Spectral);
-    let at = |i: usize| {
-        let path = Wavelengths { lambda: [nanometre(i) as f32; 4], pdf: [1.0; 4] };
+    Spectrum::tabulated(nanometres(), |lambda| {
+        let of_host = f64::from(host.lanes(&Wavelengths::single(lambda as f32)).x);
         // Particles in a host that absorbs may take away from what it would absorb in their place.
-        (host.lanes(&path).x + interpolate(&lambda, &particles, nanometre(i)) as f32).max(0.0)
-    };
-    Spectrum::Table {
-        wavelengths: (0..NANOMETRES).map(|i| nanometre(i) as f32).collect(),
-        values: (0..NANOMETRES).map(at).collect(),
-    }
+        (of_host + interpolate(&bulk.wavelengths, &particles, lambda)).max(0.0)
+    })
 }
 
 fn table(wavelengths: &[f64], values: &[f64]) -> Spectrum {
-    Spectrum::Table { wavelengths: single(wavelengths), values: single(values) }
-}
-
-fn single(values: &[f64]) -> Vec<f32> {
-    values.iter().map(|value| *value as f32).collect()
+    Spectrum::tabulated(wavelengths.iter().copied(), |lambda| interpolate(wavelengths, values, lambda))
 }

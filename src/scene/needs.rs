@@ -101,7 +101,7 @@ impl Needs {
                 "next-event estimation",
                 self.direct_light,
                 if self.direct_light {
-                    "a sun, a picture of the sky or an emitter can be seen from a scattering or diffuse vertex"
+                    "a sun, a sky that is not even or an emitter can be seen from a scattering or diffuse vertex"
                 } else {
                     "no light can be looked for from any vertex"
                 },

@@ -48,6 +48,16 @@ pub fn nanometre(index: usize) -> f64 {
     LAMBDA_MIN + index as f64
 }
 
+/// The wavelengths of a table at whole nanometres.
+pub fn nanometres() -> impl Iterator<Item = f64> {
+    (0..NANOMETRES).map(nanometre)
+}
+
+/// The wavelengths of a table at the knots.
+pub fn knots() -> impl Iterator<Item = f64> {
+    (0..KNOTS).map(|index| LAMBDA_MIN + KNOT_STEP * index as f64)
+}
+
 /// The colour matching functions at `lambda` nm; zero outside 380 to 780 nm.
 pub fn colour_matching(lambda: f64) -> DVec3 {
     if !(LAMBDA_MIN..=LAMBDA_MAX).contains(&lambda) {
@@ -104,7 +114,7 @@ fn knot(lambda: f64) -> (usize, f64) {
 }
 
 /// A table at the knots, linear in between and constant beyond its ends.
-pub(super) fn interpolate(table: &[f64; KNOTS], lambda: f64) -> f64 {
+pub fn interpolate(table: &[f64; KNOTS], lambda: f64) -> f64 {
     let (index, t) = knot(lambda);
     table[index] + (table[index + 1] - table[index]) * t
 }

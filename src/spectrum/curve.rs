@@ -107,6 +107,13 @@ impl LaneCurve {
 }
 
 impl Spectrum {
+    /// A table of a function of the wavelength in nm, at strictly rising ones.
+    pub fn tabulated(wavelengths: impl IntoIterator<Item = f64>, value: impl Fn(f64) -> f64) -> Self {
+        let entry = |lambda: f64| (lambda as f32, value(lambda) as f32);
+        let (wavelengths, values) = wavelengths.into_iter().map(entry).unzip();
+        Self::Table { wavelengths, values }
+    }
+
     /// True when it is zero at every wavelength.
     pub fn is_zero(&self) -> bool {
         match self {
@@ -196,20 +203,28 @@ fn curve_at_nanometres(curve: RgbCurve) -> [f64; NANOMETRES] {
 }
 
 /// Linear between the entries of a table and constant beyond its ends; an empty table is zero.
-pub fn interpolate(wavelengths: &[f32], values: &[f32], lambda: f64) -> f64 {
+pub fn interpolate<T: Copy + Into<f64>>(wavelengths: &[T], values: &[T], lambda: f64) -> f64 {
     let length = wavelengths.len().min(values.len());
     let (wavelengths, values) = (&wavelengths[..length], &values[..length]);
-    let above = wavelengths.partition_point(|w| f64::from(*w) <= lambda);
+    let above = wavelengths.partition_point(|w| (*w).into() <= lambda);
     match (above.checked_sub(1), above < length) {
         (None, false) => 0.0,
-        (None, true) => f64::from(values[0]),
-        (Some(below), false) => f64::from(values[below]),
+        (None, true) => values[0].into(),
+        (Some(below), false) => values[below].into(),
         (Some(below), true) => {
-            let (start, end) = (f64::from(wavelengths[below]), f64::from(wavelengths[above]));
-            let (from, to) = (f64::from(values[below]), f64::from(values[above]));
+            let [start, end]: [f64; 2] = [below, above].map(|i| wavelengths[i].into());
+            let [from, to]: [f64; 2] = [below, above].map(|i| values[i].into());
             from + (to - from) * ((lambda - start) / (end - start))
         }
     }
+}
+
+/// Linear between the entries, two or more, of a table from `first` nm in equal steps, and constant beyond its ends.
+pub fn interpolate_even(table: &[f64], [first, step]: [f64; 2], lambda: f64) -> f64 {
+    let last = table.len() - 1;
+    let position = ((lambda - first) / step).clamp(0.0, last as f64);
+    let index = (position as usize).min(last - 1);
+    table[index] + (table[index + 1] - table[index]) * (position - index as f64)
 }
 
 #[cfg(test)]
@@ -296,9 +311,14 @@ mod tests {
 
     #[test]
     fn broken_tables_do_not_panic() {
-        assert_eq!(interpolate(&[], &[], 500.0), 0.0);
+        assert_eq!(interpolate::<f32>(&[], &[], 500.0), 0.0);
         assert_eq!(interpolate(&[400.0, 500.0], &[2.0], 450.0), 2.0);
         assert_eq!(interpolate(&[500.0], &[2.0], 450.0), 2.0);
+        for (lambda, value) in
+            [(300.0, 1.0), (400.0, 1.0), (410.0, 2.0), (420.0, 3.0), (430.0, 1.0), (999.0, -1.0)]
+        {
+            assert_eq!(interpolate_even(&[1.0, 3.0, -1.0], [400.0, 20.0], lambda), value);
+        }
     }
 
     #[test]

@@ -12,6 +12,9 @@ use glam::{DVec3, Vec3};
 /// The weights of R, G and B.
 pub const LUMINANCE_WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
+/// Maximum luminous efficacy in lm/W: a luminance in W times this is in lm.
+pub const LUMENS_PER_WATT: f64 = 683.0;
+
 /// Luminance in double precision, for statistics.
 pub fn luminance_f64(rgb: DVec3) -> f64 {
     rgb.dot(DVec3::from_array(LUMINANCE_WEIGHTS))

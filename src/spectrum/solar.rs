@@ -6,10 +6,7 @@
 //! with an aerosol of optical depth 0.084 at 500 nm, 0.34 cm of ozone and 1.42 cm of water.
 
 use super::Spectrum;
-use super::cie::{KNOTS, LAMBDA_MIN, interpolate};
-
-/// Nanometres between the entries of the tables.
-const STEP: f64 = 5.0;
+use super::cie::{KNOTS, interpolate, knots};
 
 /// Irradiance above the atmosphere at the mean distance of the earth, in W m^-2 nm^-1.
 pub fn extraterrestrial(lambda: f64) -> f64 {
@@ -23,11 +20,7 @@ pub fn direct(scale: f64) -> Spectrum {
 
 /// A spectrum at the wavelengths of the tables.
 pub fn tabulated(value: impl Fn(f64) -> f64) -> Spectrum {
-    let wavelength = |i: usize| LAMBDA_MIN + STEP * i as f64;
-    Spectrum::Table {
-        wavelengths: (0..KNOTS).map(|i| wavelength(i) as f32).collect(),
-        values: (0..KNOTS).map(|i| value(wavelength(i)) as f32).collect(),
-    }
+    Spectrum::tabulated(knots(), value)
 }
 
 /// From 380 nm in steps of 5 nm.
@@ -61,7 +54,8 @@ const DIRECT: [f64; KNOTS] = [
 #[cfg(test)]
 mod tests {
     use super::super::Role;
-    use super::super::luminance::luminance_f64;
+    use super::super::cie::KNOT_STEP;
+    use super::super::luminance::{LUMENS_PER_WATT, luminance_f64};
     use super::*;
 
     /// The integrals of the published half nanometres from 380 to 780 nm by the trapezoidal rule are 655.877 and
@@ -70,7 +64,7 @@ mod tests {
     fn the_knots_keep_the_integrals_of_the_table() {
         for (table, published) in [(&EXTRATERRESTRIAL, 655.877), (&DIRECT, 467.824)] {
             let ends = 0.5 * (table[0] + table[KNOTS - 1]);
-            let sum = STEP * (table.iter().sum::<f64>() - ends);
+            let sum = KNOT_STEP * (table.iter().sum::<f64>() - ends);
             assert!((sum / published - 1.0).abs() < 4e-4, "{sum} {published}");
         }
     }
@@ -80,7 +74,7 @@ mod tests {
     #[test]
     fn illuminances_are_those_of_the_table() {
         for (spectrum, lux) in [(tabulated(extraterrestrial), 133_100.0), (direct(1.0), 97_142.0)] {
-            let found = 683.0 * luminance_f64(spectrum.to_rgb(Role::Illuminant).as_dvec3());
+            let found = LUMENS_PER_WATT * luminance_f64(spectrum.to_rgb(Role::Illuminant).as_dvec3());
             assert!((found / lux - 1.0).abs() < 1e-3, "{found} {lux}");
         }
     }

@@ -48,6 +48,11 @@ impl Wavelengths {
         wavelengths
     }
 
+    /// All lanes at one wavelength in nm, to look a curve up there.
+    pub const fn single(lambda: f32) -> Self {
+        Self { lambda: [lambda; 4], pdf: [1.0; 4] }
+    }
+
     /// The wavelengths for `u` in this mode.
     pub fn for_mode(mode: LaneMode, u: f32) -> Self {
         match mode {

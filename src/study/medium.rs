@@ -21,7 +21,7 @@ use serde::Serialize;
 
 use crate::optics::RefractiveIndex;
 use crate::optics::medium::Medium;
-use crate::optics::particles::{EnsemblePhase, Mixture};
+use crate::optics::particles::{EnsemblePhase, Mixture, SpeciesBulk};
 use crate::scene::description::{MediumDescription, Model, ModelPhase};
 
 pub use colour::Colour;
@@ -89,7 +89,7 @@ pub struct MediumReport {
     /// R of an endless depth.
     pub reflectance: Vec<f64>,
     /// What each species does, without its host.
-    pub species: Vec<SpeciesReport>,
+    pub species: Vec<SpeciesBulk>,
     /// Estimate of the greatest relative error of integrals over radius.
     pub quadrature_error: f64,
     /// Colours of a column.
@@ -104,21 +104,6 @@ pub struct MediumReport {
     /// Whether the scattering of its particles was in the cache; no file says so.
     #[serde(skip)]
     pub was_kept: bool,
-}
-
-/// What particles of one kind do.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SpeciesReport {
-    /// Their name.
-    pub name: String,
-    /// Their share of the whole volume.
-    pub volume_fraction: f64,
-    /// Extinction in 1/m.
-    pub sigma_t: Vec<f64>,
-    /// Scattering in 1/m.
-    pub sigma_s: Vec<f64>,
-    /// Mean cosine of the angle of scattering.
-    pub g: Vec<f64>,
 }
 
 /// Colours of white light behind a length of the medium.

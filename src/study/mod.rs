@@ -1,4 +1,4 @@
-//! Finds out how well pictures are made: renders the same frames in several ways and compares.
+//! Measures: how well pictures are made, by rendering the same frames in several ways, and what media do to light.
 //!
 //! * [`compare`] compares pictures that are there with others.
 //! * [`convergence`] measures errors against run time, by means of [`statistics`].

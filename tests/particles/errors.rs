@@ -26,6 +26,8 @@ fn sizes_that_cannot_be() {
         (table(&[-1e-6, 1e-6], &[1.0, 2.0]), "the least radius of the table in m is"),
         (table(&[1e-6, 2e-6], &[1.0, -2.0]), "number 1 of the table is -2"),
         (table(&[1e-6, 2e-6], &[0.0, 0.0]), "every number of the table is 0"),
+        (table(&[1e-6, 1.001e-6, 9.999e-5, 1e-4], &[1.0, 0.0, 0.0, 1.0]), "too steep to be summed up"),
+        (power(1e6, 1e-7, 1e-6), "too steep to be summed up"),
     ] {
         let mut mixture = sea();
         mixture.species[1].sizes = sizes;

@@ -12,7 +12,7 @@ fn phase_functions_over_wavelength_are_read() {
     let scene = example("phase functions");
     let at = |name: &str, lambda: f32| {
         let MediumPhase::Spectral(phase) = &scene.media[name].phase else { panic!("{name} is not spectral") };
-        let lanes = phase.at(&Wavelengths { lambda: [lambda; 4], pdf: [1.0; 4] });
+        let lanes = phase.at(&Wavelengths::single(lambda));
         f64::from(lanes.value(Deflection::FORWARD).x) * std::f64::consts::PI
     };
     let tables = [9.0 / 13.0, 2.0 / 6.0];

@@ -186,8 +186,8 @@ fn at(spectrum: &Spectrum, lambda: f64) -> f64 {
         Spectrum::Constant(value) => f64::from(*value),
         Spectrum::Table { wavelengths, values } => interpolate(wavelengths, values, lambda),
         _ => {
-            let path = Wavelengths { lambda: [lambda as f32; 4], pdf: [1.0; 4] };
-            f64::from(spectrum.prepare(Role::Coefficient, LaneMode::Spectral).lanes(&path).x)
+            let curve = spectrum.prepare(Role::Coefficient, LaneMode::Spectral);
+            f64::from(curve.lanes(&Wavelengths::single(lambda as f32)).x)
         }
     }
 }

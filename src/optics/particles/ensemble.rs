@@ -18,6 +18,7 @@ use super::super::lorenz_mie::Pattern;
 use super::angles::Angles;
 use super::quadrature::Quadrature;
 use super::{Bulk, Cache, Mixture, MixtureError};
+use crate::spectrum::cie::{LAMBDA_MAX, LAMBDA_MIN};
 
 /// Depolarised part of what molecules scatter, (2).
 const P90: f64 = 0.835;
@@ -27,8 +28,6 @@ const STEPS: u32 = 40;
 /// Steps of the phase functions: of spheres of many sizes, which vary slowly, and of such as have rings. Both divide the
 /// steps of the coefficients.
 const PHASE_STEPS: [u32; 2] = [10, 20];
-/// The first and the last wavelength in nm.
-const VISIBLE: [f64; 2] = [380.0, 780.0];
 
 /// Coefficients and phase function of a mixture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,6 +119,5 @@ impl Mixture {
 
 /// Wavelengths in nm.
 fn evenly(steps: u32) -> Vec<f64> {
-    let [first, last] = VISIBLE;
-    (0..=steps).map(|i| first + (last - first) * f64::from(i) / f64::from(steps)).collect()
+    (0..=steps).map(|i| LAMBDA_MIN + (LAMBDA_MAX - LAMBDA_MIN) * f64::from(i) / f64::from(steps)).collect()
 }

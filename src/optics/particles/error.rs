@@ -114,4 +114,9 @@ pub enum SizesError {
     /// No particles at all.
     #[error("every number of the table is 0: give the relative number of particles of each radius")]
     Nothing,
+    /// Numbers whose sum is 0, or none that f64 has, at the radii of the quadrature.
+    #[error(
+        "the sizes are too steep to be summed up: give them a lower exponent, and each narrow peak of a table a species of its own"
+    )]
+    Steep,
 }

@@ -1,8 +1,8 @@
 //! What particles in a fluid or in ice do to light: coefficients and phase functions of mixtures, by Lorenz-Mie theory.
 //!
 //! A [`Mixture`] is a [`Host`], such as sea water, and [`Species`] of spheres in it, each of one matter and with a
-//! [`SizeDistribution`] that its volume fraction scales. [`Mixture::bulk`] is what a litre of it absorbs and scatters,
-//! [`Mixture::scattering`] also whereto. That takes tenths of a second; a [`Cache`] keeps it.
+//! [`SizeDistribution`] that its volume fraction scales. [`Mixture::bulk`] has its coefficients, [`Mixture::scattering`]
+//! its phase function, too. That takes tenths of a second; a [`Cache`] keeps it.
 //!
 //! Radii and lengths are in metres, wavelengths in nm in vacuum, coefficients in 1/m, angles in radians.
 

@@ -12,6 +12,7 @@
 use std::f64::consts::PI;
 
 use super::SizesError;
+use super::quadrature::Quadrature;
 
 /// Number of spheres over radius. Only ratios count: the volume fraction of the species scales it.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,6 +91,13 @@ impl SizeDistribution {
     /// # Errors
     /// What is wrong with the numbers.
     pub(super) fn validate(&self) -> Result<(), SizesError> {
+        self.validate_numbers()?;
+        let rule = Quadrature::new(self);
+        let is_summed = rule.numbers.iter().all(|numbers| numbers[0].is_finite());
+        if is_summed { Ok(()) } else { Err(SizesError::Steep) }
+    }
+
+    fn validate_numbers(&self) -> Result<(), SizesError> {
         match self {
             Self::PowerLaw { exponent, least, greatest } => {
                 positive("least radius in m", *least)?;
@@ -178,7 +186,6 @@ fn between(radii: &[f64], number: &[f64], r: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quadrature::Quadrature;
     use super::*;
 
     /// Cylinders that grow slimmer with their length, as many of each length as l^-2 says.

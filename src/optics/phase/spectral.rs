@@ -154,8 +154,8 @@ impl SpectralPhase {
         match &self.0 {
             Kind::HenyeyGreenstein(g) => {
                 let all = (LAMBDA_MIN as u32..=LAMBDA_MAX as u32).step_by(10);
-                let at = |nm: u32| Wavelengths { lambda: [nm as f32; 4], pdf: [1.0; 4] };
-                let lobe = |nm| PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: g.lanes(&at(nm)).x });
+                let at = |nm: u32| g.lanes(&Wavelengths::single(nm as f32)).x;
+                let lobe = |nm| PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: at(nm) });
                 all.map(|nm| (f64::from(nm), lobe(nm))).collect()
             }
             Kind::Tables(tables) => {

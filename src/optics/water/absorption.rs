@@ -16,30 +16,30 @@
 //! (2) is the usual form of the absorption of coloured dissolved organic matter, which makes fresh and coastal waters
 //! green to brown; its slope, in 1/nm, is the mean of many waters `[BRICAUD81]`.
 
+use crate::spectrum::cie::{KNOTS, interpolate};
+use crate::spectrum::curve::interpolate_even;
+
 /// The temperature in degrees Celsius at which pure water was measured.
 pub const MEASURED_AT: f64 = 22.0;
 
-const FIRST: f64 = 380.0;
-const STEP: f64 = 5.0;
-
 /// First wavelength and step in nm of the slopes of (1).
-const SLOPES: (f64, f64) = (375.0, 25.0);
+const SLOPES: [f64; 2] = [375.0, 25.0];
 /// The same of its far red.
-const RED: (f64, f64) = (725.0, 25.0);
+const RED: [f64; 2] = [725.0, 25.0];
 
 /// 1/nm, (2).
 const DISSOLVED_SLOPE: f64 = 0.014;
 
 /// Absorption coefficient of pure water in 1/m, linear between 5 nm steps, constant beyond 380 and 780 nm.
 pub fn absorption(lambda_nm: f64) -> f64 {
-    steps(&PURE, FIRST, STEP, lambda_nm)
+    interpolate(&PURE, lambda_nm)
 }
 
 /// Absorption coefficient in 1/m of water of a temperature in degrees Celsius and a salinity in parts per thousand, (1).
 pub fn absorption_at(lambda_nm: f64, temperature: f64, salinity: f64) -> f64 {
     let pure =
-        if lambda_nm <= RED.0 { absorption(lambda_nm) } else { steps(&FAR_RED, RED.0, RED.1, lambda_nm) };
-    let slope = |table| steps(table, SLOPES.0, SLOPES.1, lambda_nm);
+        if lambda_nm <= RED[0] { absorption(lambda_nm) } else { interpolate_even(&FAR_RED, RED, lambda_nm) };
+    let slope = |table| interpolate_even(table, SLOPES, lambda_nm);
     (pure + 1e-4 * ((temperature - MEASURED_AT) * slope(&WARMTH) + salinity * slope(&SALT))).max(0.0)
 }
 
@@ -48,22 +48,9 @@ pub fn dissolved_matter(lambda_nm: f64, at_440: f64) -> f64 {
     at_440 * libm::exp(-DISSOLVED_SLOPE * (lambda_nm - 440.0))
 }
 
-/// The wavelengths in nm of the tables.
-pub fn wavelengths() -> impl Iterator<Item = f64> {
-    (0..PURE.len()).map(|i| FIRST + STEP * i as f64)
-}
-
-/// A table from `first` in equal steps, linear between them and constant beyond its ends.
-fn steps(table: &[f64], first: f64, step: f64, lambda_nm: f64) -> f64 {
-    let last = table.len() - 1;
-    let position = ((lambda_nm - first) / step).clamp(0.0, last as f64);
-    let index = (position as usize).min(last - 1);
-    table[index] + (table[index + 1] - table[index]) * (position - index as f64)
-}
-
 /// 1/m from 380 nm in steps of 5 nm: `[POPE97]` to 725 nm, `[KOU93]` from 730 nm.
 #[rustfmt::skip]
-const PURE: [f64; 81] = [
+const PURE: [f64; KNOTS] = [
     0.01137, 0.00941, 0.00851, 0.00813, 0.00663, 0.00530, 0.00473, 0.00444, 0.00454,
     0.00478, 0.00495, 0.00530, 0.00635, 0.00751, 0.00922, 0.00962, 0.00979, 0.01011,
     0.0106, 0.0114, 0.0127, 0.0136, 0.0150, 0.0173, 0.0204, 0.0256, 0.0325,

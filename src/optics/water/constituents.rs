@@ -34,8 +34,7 @@ pub fn rock_flour(volume_fraction: f64) -> Species {
 }
 
 fn species(name: &str, n: f32, k: [f32; 17], sizes: SizeDistribution, volume_fraction: f64) -> Species {
-    let wavelengths: Vec<f32> = (0..k.len()).map(|i| 375.0 + 25.0 * i as f32).collect();
-    let index = RefractiveIndex::Table { wavelengths, n: vec![n; k.len()], k: k.to_vec() };
+    let index = RefractiveIndex::every_25_nm([n; 17], k);
     Species { name: name.to_owned(), index, sizes, volume_fraction }
 }
 

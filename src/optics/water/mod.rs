@@ -9,7 +9,7 @@ mod index;
 mod molecules;
 pub mod natural;
 
-pub use absorption::{MEASURED_AT, absorption, absorption_at, dissolved_matter, wavelengths};
+pub use absorption::{MEASURED_AT, absorption, absorption_at, dissolved_matter};
 pub use constituents::{algae, mineral, rock_flour};
 pub use index::{FITTED_WAVELENGTHS, SALINITY_RANGE, TEMPERATURE_RANGE, refractive_index};
 pub use molecules::molecular_scattering;

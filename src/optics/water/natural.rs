@@ -4,8 +4,9 @@
 
 use super::super::RefractiveIndex;
 use super::super::particles::{Host, Mixture};
-use super::{absorption_at, algae, dissolved_matter, mineral, molecular_scattering, rock_flour, wavelengths};
+use super::{absorption_at, algae, dissolved_matter, mineral, molecular_scattering, rock_flour};
 use crate::spectrum::Spectrum;
+use crate::spectrum::cie::knots;
 
 /// Water and what is in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +46,6 @@ impl NaturalWater {
     /// The host and the particles; what has no volume is left out.
     pub fn mixture(&self) -> Mixture {
         let Self { temperature, salinity, .. } = *self;
-        let over = |value: &dyn Fn(f64) -> f64| Spectrum::Table {
-            wavelengths: wavelengths().map(|lambda| lambda as f32).collect(),
-            values: wavelengths().map(|lambda| value(lambda) as f32).collect(),
-        };
         let absorbed = |lambda: f64| {
             absorption_at(lambda, temperature, salinity) + dissolved_matter(lambda, self.dissolved)
         };
@@ -57,8 +54,8 @@ impl NaturalWater {
         Mixture {
             host: Host {
                 index: RefractiveIndex::Water { temperature: temperature as f32, salinity: salinity as f32 },
-                absorption: over(&absorbed),
-                molecular: self.molecular_scattering.then(|| over(&scattered)),
+                absorption: Spectrum::tabulated(knots(), absorbed),
+                molecular: self.molecular_scattering.then(|| Spectrum::tabulated(knots(), scattered)),
             },
             species: species.into_iter().filter(|species| species.volume_fraction != 0.0).collect(),
         }

@@ -3,11 +3,8 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::{Axis, SkyDescription, SunDescription};
-use crate::spectrum::luminance::luminance_f64;
+use crate::spectrum::luminance::{LUMENS_PER_WATT, luminance_f64};
 use crate::spectrum::{Role, Spectrum};
-
-/// Maximum luminous efficacy in lm/W.
-const LUMENS_PER_WATT: f64 = 683.0;
 
 /// Illuminances in lux; radiance in other units than W m^-2 sr^-1 nm^-1 makes them relative.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,14 +4,12 @@ use super::allowed::Allowed;
 use super::document::Table;
 use super::error::SceneError;
 use super::value::Value;
+use crate::spectrum::luminance::LUMENS_PER_WATT;
 use crate::spectrum::{Spectrum, solar};
 
 const FORMS: &str = "a number, [r, g, b], or { wavelength = [..], value = [..] }";
 const LIGHT_FORMS: &str = "a number, [r, g, b], { wavelength = [..], value = [..] }, or { blackbody = .. }";
 const SUN_FORMS: &str = "{ table = \"astm-g173\", scale = 1.0 }";
-
-/// Maximum luminous efficacy in lm/W: luminance and illuminance in units of what the spectrum is in.
-const LUMENS_PER_WATT: f32 = 683.0;
 
 /// Reads one number.
 type ReadNumber<'a> = dyn Fn(&Value<'_>) -> Result<f32, SceneError> + 'a;
@@ -47,7 +45,7 @@ pub(super) fn irradiance(value: &Value<'_>) -> Result<Spectrum, SceneError> {
     let illuminance = table.require("illuminance", "write the illuminance in lux, such as 100000")?;
     let spectrum = Spectrum::Blackbody {
         temperature: temperature.number32(&Allowed::KELVIN_OF_LIGHT)?,
-        luminance: illuminance.number32(&Allowed::NOT_NEGATIVE)? / LUMENS_PER_WATT,
+        luminance: illuminance.number32(&Allowed::NOT_NEGATIVE)? / LUMENS_PER_WATT as f32,
     };
     table.finish()?;
     Ok(spectrum)

@@ -1,12 +1,13 @@
 //! Computes what a report says.
 
-use super::{Colour, Column, MediumReport, MediumStudy, SpeciesReport, Subject, phase};
+use super::{Colour, Column, MediumReport, MediumStudy, Subject, phase};
 use crate::optics::RefractiveIndex;
 use crate::optics::apparent::{backscattered_share, diffuse_attenuation, reflectance};
 use crate::optics::half_space::h_function::HFunction;
 use crate::optics::medium::Medium;
 use crate::optics::particles::{Bulk, Cache, EnsemblePhase, MixtureError, Scattering};
 use crate::scene::description::ModelPhase;
+use crate::spectrum::curve::interpolate;
 use crate::spectrum::{LaneCurve, Wavelengths};
 
 /// Wavelengths in nm at which colours are computed where nothing else says them; what lies between is linear.
@@ -50,7 +51,7 @@ impl MediumStudy {
     /// `fine` is what colours are of.
     fn report(&self, fine: &Bulk, bulk: Bulk, phase: EnsemblePhase) -> MediumReport {
         let [seen, told] = [fine, &bulk].map(|bulk| Apparent::of(bulk, &phase));
-        let over = |values: Vec<f64>| move |lambda: f64| between(&fine.wavelengths, &values, lambda);
+        let over = |values: Vec<f64>| move |lambda: f64| interpolate(&fine.wavelengths, &values, lambda);
         let extinction = over(sums(&fine.sigma_a, &fine.sigma_s));
         let attenuation = over(seen.attenuation);
         let column = Column {
@@ -61,13 +62,6 @@ impl MediumStudy {
         let sigma_t = sums(&bulk.sigma_a, &bulk.sigma_s);
         let pairs = bulk.sigma_s.iter().zip(&sigma_t);
         let albedo = pairs.map(|(s, t)| if *t > 0.0 { s / t } else { 0.0 }).collect();
-        let species = bulk.species.into_iter().map(|s| SpeciesReport {
-            name: s.name,
-            volume_fraction: s.volume_fraction,
-            sigma_t: s.sigma_t,
-            sigma_s: s.sigma_s,
-            g: s.g,
-        });
         MediumReport {
             medium: self.name.clone(),
             reduced_sigma_s: bulk.sigma_s.iter().zip(&bulk.g).map(|(s, g)| s * (1.0 - g)).collect(),
@@ -81,7 +75,7 @@ impl MediumStudy {
             g: bulk.g,
             sigma_t,
             albedo,
-            species: species.collect(),
+            species: bulk.species,
             quadrature_error: bulk.relative_error.max(fine.relative_error),
             column,
             depth: Colour::reflected(over(seen.reflectance)),
@@ -105,7 +99,7 @@ impl Apparent {
         let shares: Vec<f64> = phase.values.iter().map(|v| backscattered_share(&phase.angles, v)).collect();
         let mut found = Self { backscattering: Vec::new(), attenuation: Vec::new(), reflectance: Vec::new() };
         for (i, lambda) in bulk.wavelengths.iter().enumerate() {
-            let share = between(&phase.wavelengths, &shares, *lambda);
+            let share = interpolate(&phase.wavelengths, &shares, *lambda);
             let (a, s, g) = (bulk.sigma_a[i], bulk.sigma_s[i], bulk.g[i]);
             found.backscattering.push(share * s);
             found.attenuation.push(diffuse_attenuation(a, s, g));
@@ -157,17 +151,4 @@ fn over(curve: &LaneCurve, wavelengths: &[f64]) -> Vec<f64> {
 
 fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
-}
-
-/// Linear between rising wavelengths, and constant beyond them.
-fn between(wavelengths: &[f64], values: &[f64], lambda: f64) -> f64 {
-    let above = wavelengths.partition_point(|w| *w <= lambda);
-    match (above.checked_sub(1), wavelengths.get(above)) {
-        (None, _) => values[0],
-        (Some(below), None) => values[below],
-        (Some(below), Some(end)) => {
-            let t = (lambda - wavelengths[below]) / (end - wavelengths[below]);
-            values[below] + (values[above] - values[below]) * t
-        }
-    }
 }

@@ -17,8 +17,7 @@ pub(super) fn tabulated(phase: &MediumPhase) -> EnsemblePhase {
         MediumPhase::One(_) => vec![550.0],
         MediumPhase::Spectral(_) => (380..=780).step_by(20).map(f64::from).collect(),
     };
-    let path = |lambda: &f64| Wavelengths { lambda: [*lambda as f32; 4], pdf: [1.0; 4] };
-    let paths: Vec<Wavelengths> = wavelengths.iter().map(path).collect();
+    let paths: Vec<_> = wavelengths.iter().map(|lambda| Wavelengths::single(*lambda as f32)).collect();
     sampled(wavelengths, |i, deflection| f64::from(phase.at(&paths[i]).value(deflection).x))
 }
 

@@ -1,6 +1,7 @@
 //! The columns of a report: what stands over them in tables and in files, and their numbers.
 
-use super::{MediumReport, SpeciesReport};
+use super::MediumReport;
+use crate::optics::particles::SpeciesBulk;
 
 /// A quantity over wavelength.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +31,7 @@ pub const QUANTITIES: [Quantity; 10] = [
 ];
 
 /// A quantity of a species: its key, its unit and its numbers.
-pub type SpeciesQuantity = (&'static str, &'static str, fn(&SpeciesReport) -> &[f64]);
+pub type SpeciesQuantity = (&'static str, &'static str, fn(&SpeciesBulk) -> &[f64]);
 
 /// All of a species.
 pub const OF_SPECIES: [SpeciesQuantity; 3] =

@@ -113,13 +113,6 @@ struct Contents {
     warnings: Vec<String>,
 }
 
-const KINDS: [(&str, ModelKind); 4] = [
-    ("natural-water", ModelKind::NaturalWater),
-    ("iceberg", ModelKind::Iceberg),
-    ("milk", ModelKind::Milk),
-    ("particles", ModelKind::Particles),
-];
-
 /// Computed phase functions, and whether one lobe stands for them.
 const COMPUTED: [(&str, bool); 2] = [("lorenz-mie", false), ("henyey-greenstein", true)];
 
@@ -133,7 +126,7 @@ fn model_phase(value: &Value<'_>) -> Result<ModelPhase, SceneError> {
 
 /// Reads the model of the medium in `table`, whose key `model` has this value.
 pub(super) fn read(table: &Table<'_>, value: &Value<'_>) -> Result<Model, SceneError> {
-    let kind = value.choice(&KINDS)?;
+    let kind = value.choice(&ModelKind::ALL.map(|kind| (kind.name(), kind)))?;
     if let Some(given) = kind.computed().iter().find_map(|key| table.get(key)) {
         return Err(given.invalid(format!(
             "\"{}\" computes this from what is in it: remove this, or `model`",
