@@ -13,8 +13,11 @@ use glam::Vec3;
 
 const SKY: (usize, usize) = (128, 64);
 
+/// Radiance from a direction.
+type Sky = fn(Vec3) -> Vec3;
+
 /// The skies that ship, with their formulas.
-const SKIES: [(&str, fn(Vec3) -> Vec3); 2] =
+const SKIES: [(&str, Sky); 2] =
     [("sequences/iceberg/sky.exr", iceberg_sky), ("sequences/seas/sky.exr", hazy_sky)];
 
 /// The sky of the iceberg: blue above, bright at the horizon, a wide warm glow around a low sun.

@@ -21,7 +21,8 @@ pub struct Counters {
     pub label_mismatches: u64,
     /// Samples whose radiance was not finite; they are left out of the mean.
     pub non_finite: u64,
-    /// Paths that met nothing although they were inside a fluid that ends somewhere.
+    /// Paths that met nothing although they were inside a fluid that ends somewhere, or walked on in it farther from everything
+    /// than the scene is wide.
     pub escaped_inside: u64,
     /// Paths ended by the scene's `max_depth`: the picture lacks their light, as was asked for.
     pub depth_limited: u64,
@@ -36,8 +37,9 @@ impl Counters {
     /// paths are long.
     pub const MISMATCH_LIMIT: f64 = 1e-6;
 
-    /// So many times the [roughness] may be mismatches besides: three times what is measured, 0.003 to 0.007 of balls of index 1
-    /// to 2.4, 3 to 30 m from the eye, whose free paths are 0.1 to 1 mm.
+    /// So many times the [roughness] may be mismatches besides: three times what was measured, 0.003 to 0.007 of balls of index 1
+    /// to 2.4, 3 to 30 m from the eye, whose free paths are 0.1 to 1 mm, before particles next to a surface were kept off it;
+    /// since then there were none in a million flights of each.
     ///
     /// [roughness]: crate::scene::frame::Frame::roughness
     const BY_ROUGHNESS: f64 = 0.02;

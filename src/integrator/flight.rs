@@ -12,7 +12,7 @@ use crate::accel::{Accel, Hit, Ignored};
 use crate::geometry::Ray;
 use crate::geometry::machine::Lanes as Wide;
 use crate::optics::dwivedi::LedFlight;
-use crate::optics::medium::MediumLanes;
+use crate::optics::medium::{MediumId, MediumLanes};
 use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
@@ -175,13 +175,38 @@ impl Sample<'_> {
         Event::Surface(hit)
     }
 
+    /// Where the particle is that a path has flown to: in its medium, no nearer than rounding to the plane that it left.
+    ///
+    /// A flight shorter than that, or along the surface, may end on the plane or beyond; whoever turns outwards from there
+    /// would meet nothing and walk on through a medium that is not there.
+    #[inline]
+    pub(super) fn particle(&self, branch: &Branch, distance: f32) -> Vec3 {
+        let point = branch.origin + branch.direction * distance;
+        if branch.leaves == u32::MAX {
+            return point;
+        }
+        let normal = self.frame.geometry.normal(branch.leaves, self.time);
+        let cos = normal.dot(branch.direction);
+        let missing = rounding(branch.origin, distance) - cos.abs() * distance;
+        if missing > 0.0 { point + normal * missing.copysign(cos) } else { point }
+    }
+
     /// The path has collided at a point that it was traced to: looks for a ball around it, and lets those go on that are
-    /// not too far from all there is.
+    /// not too far from all there is. One that is farther than its medium reaches has slipped out at an edge, and is counted.
     #[inline]
     pub(super) fn collided_at(&mut self, branch: &mut Branch, point: Vec3, medium: &MediumLanes) {
         let clearing = &mut self.scratch.around.clearing;
+        let was_near = clearing.widths == 1.0;
         let survival = clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
+        if survival < 1.0 && was_near && self.ends_somewhere(branch.medium) {
+            self.scratch.counters.escaped_inside += 1;
+        }
         branch.wander_off(survival);
+    }
+
+    /// True of media whose paths cannot come farther from all there is than that is wide.
+    pub(super) fn ends_somewhere(&self, medium: MediumId) -> bool {
+        !cfg!(floe_without_guards) && medium != MediumId(0) && !self.frame.endless[medium.0 as usize]
     }
 
     /// True when a particle of its medium may turn the path.

@@ -284,7 +284,7 @@ impl Sample<'_> {
         if self.is_spent(branch) {
             return Fate::Ends;
         }
-        let point = branch.origin + branch.direction * distance;
+        let point = self.particle(branch, distance);
         if branch.interactions == 0 && self.first.is_none() {
             self.first = Some(FirstHit {
                 distance: (point - self.eye).length(),
@@ -345,7 +345,7 @@ impl Sample<'_> {
         if self.frame.endless[branch.medium.0 as usize] {
             return;
         }
-        if !cfg!(floe_without_guards) && branch.medium != MediumId(0) {
+        if self.ends_somewhere(branch.medium) {
             self.scratch.counters.escaped_inside += 1;
         }
         let lights = &self.frame.lights;

@@ -78,6 +78,11 @@ impl Geometry {
             .map(|i| self.positions[i as usize] + self.motions[i as usize] * time)
     }
 
+    /// The right-hand unit normal of a triangle at a time in frames.
+    pub fn normal(&self, triangle: u32, time: f32) -> Vec3 {
+        unit_normal(&self.vertices_at(triangle, time))
+    }
+
     /// What a point of a triangle moves by in a frame, in metres.
     pub fn motion(&self, triangle: u32, point: Vec3, time: f32) -> Vec3 {
         if self.motions.is_empty() {
@@ -103,7 +108,7 @@ impl Geometry {
     /// How much later than at its own line a ray's parallels meet the plane of a triangle, in metres for each metre beside
     /// the line: t(offset) = t - slope . offset. Its length is the tangent of the angle with the normal.
     pub fn slope(&self, triangle: u32, direction: Vec3, time: f32) -> Vec3 {
-        let n = unit_normal(&self.vertices_at(triangle, time));
+        let n = self.normal(triangle, time);
         let cos = n.dot(direction);
         let beside = n - cos * direction;
         beside / if cos.abs() < 1e-6 { 1e-6_f32.copysign(cos) } else { cos }

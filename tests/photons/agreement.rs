@@ -186,6 +186,35 @@ fn wavelengths_that_bend_their_own_ways() {
     }
 }
 
+/// All that is done over wavelength at once: computed coefficients and phase functions, indices that part the lanes, the light
+/// of a clear sky.
+#[test]
+fn a_turbid_block_that_disperses_under_a_clear_sky() {
+    let folder = SceneFolder::new()
+        .mesh("floor.ply", &floor())
+        .mesh("cube.ply", &cuboid(DVec3::new(-0.5, -0.5, 0.1), DVec3::new(0.4, 0.3, 0.7)));
+    let text = format!(
+        "[[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 0.6 }}\n{VIEW}\
+         [media.sea]\nmodel = \"particles\"\nior = {{ wavelength = [380, 780], n = [1.5, 1.3] }}\nabsorption = 0.1\n\
+         species = [{{ ior = 1.6, volume_fraction = 1e-6, sizes = {{ kind = \"log-normal\", median_um = 0.3, deviation = 0.3 }} }}]\n\
+         [[surfaces]]\nmesh = \"cube.ply\"\nfront = \"air\"\nback = \"sea\"\nnormals = \"flat\"\n\
+         material = {{ kind = \"dielectric\" }}\n[sun]\nelevation = 35\nazimuth = 60\nirradiance = 0\n\
+         [sky]\nradiance = {{ model = \"hosek-wilkie\", turbidity = 4 }}\n[render]\ndispersion = true\n"
+    );
+    let scene = folder.scene(&text);
+    assert!(
+        scene.frame.needs.dispersive && scene.frame.media.iter().any(|medium| medium.phase.one().is_none())
+    );
+    let by_paths = Seeds::render(&scene, 1024, 4, GRID).means();
+    let render = format!(
+        "{text}integrator = \"photon\"\nphotons = {{ count = 20000, sky = true, final_gather = false }}\n"
+    );
+    let [near, middle, wide] = [1.0, 2.0, 4.0]
+        .map(|factor| Seeds::render(&with_radius(folder.scene(&render), factor * 0.03), 160, 4, GRID));
+    let by_photons = Seeds::extrapolated(&near, &middle, &wide).means();
+    assert_agree("all over wavelength", &by_photons, &by_paths, 0.05);
+}
+
 /// Lobes from backward ones to narrow peaks: some lanes of a pass take an angle for part of a peak, others do not.
 #[test]
 fn phase_functions_that_differ_from_wavelength_to_wavelength() {

@@ -109,6 +109,7 @@ const WRONG: &[Wrong] = &[
     ("[media.a]\nmodel = 'iceberg'\nior = 1.31", 3, 7, "media.a.ior: 1.31: \"iceberg\" computes this"),
     ("[media.a]\nmodel = 'milk'\nscattering = [1, 1, 1]", 3, 14, "\"milk\" computes this"),
     ("[media.a]\nmodel = 'particles'\nior = 1.3\nspecies = []\nalbedo = 1", 5, 10, "\"particles\" computes this"),
+    ("[media.a]\nmodel = 'milk'\nphase = { kind = 'rayleig' }", 3, 18, "did you mean `rayleigh`?"),
     ("[media.a]\nmodel = 'milk'\nphase = 0.9", 3, 9, "write one of `lorenz-mie` and `henyey-greenstein` in quotes"),
     ("[media.a]\nmodel = 'milk'\nphase = 'rayleigh'", 3, 9, "write one of `lorenz-mie` and `henyey-greenstein`"),
     ("[media.a]\nmodel = 'milk'\nalgae = 1e-6", 3, 1, "unknown key `algae` in [media.a]"),

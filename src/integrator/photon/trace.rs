@@ -359,7 +359,7 @@ impl Walk<'_> {
     /// A particle of a medium: the photon is left there, and turns.
     fn scatter(&mut self, flying: &mut Flying, distance: f32, u: [f32; 4]) -> Fate {
         let branch = &mut flying.branch;
-        let point = branch.origin + branch.direction * distance;
+        let point = self.sample.particle(branch, distance);
         let share = self.tracing.volume_share;
         if share >= 1.0 || branch.stream.next4()[0] < share {
             self.arrivals.volume.push(Photon {
