@@ -95,8 +95,8 @@ fn free_paths_that_coordinates_cannot_tell_are_not_walked() {
     }
 }
 
-/// Of some million flights 50 end beyond the surface by their rounding: no frame may be refused for that, and by the limit of
-/// long free paths it would be. Light that goes far in water has no allowance.
+/// Flights of a tenth of a millimetre, some of which would end beyond the surface by their rounding: paths stay within it, and no
+/// frame is refused. Light that goes far in water has no allowance.
 #[test]
 fn labels_are_not_blamed_for_rounding() {
     let folder = slab(1.0, 20.0);
@@ -104,8 +104,8 @@ fn labels_are_not_blamed_for_rounding() {
     let scene = folder.scene(&text("extinction = 1e4\nalbedo = [0.5, 0.9, 0.99]"));
     let sampling = Sampling { samples: 256, ..scene.sampling.clone() };
     let (_, counters) = render_pixels(&scene.frame, &sampling, &|_, _| ());
-    assert!(counters.too_many_mismatches(0.0), "{counters:?}");
-    assert!(!counters.too_many_mismatches(scene.frame.roughness), "{} {counters:?}", scene.frame.roughness);
+    assert!(scene.frame.roughness > 0.0 && counters.rays > 100_000, "{} {counters:?}", scene.frame.roughness);
+    assert!(!counters.too_many_mismatches(0.0), "{counters:?}");
     assert_eq!(folder.scene(&text("scattering = 0.3")).frame.roughness, 0.0);
 }
 
