@@ -13,6 +13,7 @@ use crate::integrator::Integrator;
 use crate::mesh::Region;
 use crate::optics::density::Density;
 use crate::optics::medium::Medium;
+use crate::optics::particles::Cache;
 use crate::scene::assembly::{Assembled, Buffers};
 use crate::scene::camera_path::StartPlaces;
 use crate::scene::description::{
@@ -191,7 +192,9 @@ fn describe_model(model: &Model) -> String {
     let contents = if species.is_empty() { "nothing".to_owned() } else { species.join(", ") };
     let mut text = format!("    model {}, with {contents} of the volume\n", model.kind.name());
     let wavelengths = [450.0, 550.0, 650.0];
-    let Ok(bulk) = model.mixture.bulk(&wavelengths) else { return text };
+    // What frames are rendered with, which the cache has by now.
+    let scattering = model.mixture.scattering(&Cache::of_user());
+    let Some(bulk) = scattering.ok().and_then(|found| found.bulk.at(&wavelengths)) else { return text };
     for (i, lambda) in wavelengths.iter().enumerate() {
         let (a, s, g) = (bulk.sigma_a[i], bulk.sigma_s[i], bulk.g[i]);
         let path = 1.0 / (a + s);

@@ -56,6 +56,30 @@ pub struct SpeciesBulk {
     pub g: Vec<f64>,
 }
 
+impl Bulk {
+    /// What it has of all these wavelengths in nm; `None` where it lacks one. The error stays that of all that it has.
+    pub fn at(&self, wavelengths: &[f64]) -> Option<Self> {
+        let places = wavelengths.iter().map(|w| self.wavelengths.iter().position(|other| other == w));
+        let places: Vec<usize> = places.collect::<Option<_>>()?;
+        let of = |values: &[f64]| places.iter().map(|i| values[*i]).collect();
+        let species = |s: &SpeciesBulk| SpeciesBulk {
+            sigma_t: of(&s.sigma_t),
+            sigma_s: of(&s.sigma_s),
+            g: of(&s.g),
+            ..s.clone()
+        };
+        Some(Self {
+            wavelengths: wavelengths.to_vec(),
+            n: of(&self.n),
+            sigma_a: of(&self.sigma_a),
+            sigma_s: of(&self.sigma_s),
+            g: of(&self.g),
+            species: self.species.iter().map(species).collect(),
+            relative_error: self.relative_error,
+        })
+    }
+}
+
 impl Mixture {
     /// What the mixture absorbs and scatters at some wavelengths in nm, in any order.
     ///

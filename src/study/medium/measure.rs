@@ -23,7 +23,7 @@ impl MediumStudy {
             Subject::Mixture { mixture, phase } => {
                 let (Scattering { bulk: mut fine, phase: computed }, was_kept) =
                     mixture.scattering_kept(cache)?;
-                let mut bulk = match chosen(&fine, &self.wavelengths) {
+                let mut bulk = match fine.at(&self.wavelengths) {
                     Some(bulk) => bulk,
                     None => mixture.bulk(&self.wavelengths)?,
                 };
@@ -107,24 +107,6 @@ impl Apparent {
         }
         found
     }
-}
-
-/// What a table that is there already has of all these wavelengths.
-fn chosen(bulk: &Bulk, wavelengths: &[f64]) -> Option<Bulk> {
-    let places = wavelengths.iter().map(|w| bulk.wavelengths.iter().position(|other| other == w));
-    let places: Vec<usize> = places.collect::<Option<_>>()?;
-    let of = |values: &Vec<f64>| places.iter().map(|i| values[*i]).collect::<Vec<f64>>();
-    let mut found = bulk.clone();
-    for values in [&mut found.wavelengths, &mut found.n, &mut found.sigma_a, &mut found.sigma_s, &mut found.g]
-    {
-        *values = of(values);
-    }
-    for species in &mut found.species {
-        for values in [&mut species.sigma_t, &mut species.sigma_s, &mut species.g] {
-            *values = of(values);
-        }
-    }
-    Some(found)
 }
 
 /// A medium whose coefficients are given, as rays meet it.
