@@ -35,6 +35,7 @@ fn given(wavelengths: &[f64]) -> MediumReport {
     let medium = Medium {
         name: "sea".into(),
         n: 1.33,
+        index: LaneCurve::Constant(1.33),
         sigma_a: LaneCurve::sampled(|lambda| if lambda < 500.0 { 0.02 } else { 0.3 }),
         sigma_s: LaneCurve::Constant(0.5),
         emission: LaneCurve::Constant(0.0),
