@@ -58,6 +58,19 @@ impl Reach {
         self
     }
 
+    /// False where none of its rays comes to a point.
+    pub(super) fn reaches(&self, x: DVec3) -> bool {
+        let far = x.z - f64::from(self.least[2]);
+        let near = (x.z - f64::from(self.most[2])).max(0.0);
+        let within = |axis: usize| {
+            let [least, most] = [self.least, self.most].map(|ends| f64::from(ends[3 + axis]));
+            let low = f64::from(self.least[axis]) + (near * least).min(far * least);
+            let high = f64::from(self.most[axis]) + (near * most).max(far * most);
+            low <= x[axis] && x[axis] <= high
+        };
+        far > 0.0 && within(0) && within(1)
+    }
+
     fn middle(&self, axis: usize) -> f32 {
         0.5 * self.least[axis] + 0.5 * self.most[axis]
     }

@@ -85,7 +85,12 @@ impl Patch {
         a.length_squared().max(b.length_squared()).max(a.distance_squared(b)).sqrt()
     }
 
-    fn at(&self, uv: DVec2) -> DVec3 {
+    /// The interpolated normal, of any length.
+    pub(super) fn normal(&self, uv: DVec2) -> DVec3 {
+        self.normal + self.bends[0] * uv.x + self.bends[1] * uv.y
+    }
+
+    pub(super) fn at(&self, uv: DVec2) -> DVec3 {
         self.corner + self.edges[0] * uv.x + self.edges[1] * uv.y
     }
 }
@@ -129,7 +134,7 @@ impl Aim<'_> {
     /// The refracted ray at (u, v); none where light arrives from behind or is reflected totally.
     fn bent(&self, uv: DVec2) -> Option<Bent> {
         let patch = self.patch;
-        let mixed = patch.normal + patch.bends[0] * uv.x + patch.bends[1] * uv.y;
+        let mixed = patch.normal(uv);
         let length = mixed.length();
         let normal = mixed / length;
         let cos_i = self.to_sun.dot(normal);

@@ -15,9 +15,11 @@
 //! A root on an edge belongs to the triangle into which an infinitesimal shift of the point by [`SHIFT`] moves it, which is
 //! one of two neighbours, or one of all around a corner; at a fold along an edge it is both or none, as on its two sides.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
+use super::index::Reach;
 use super::patch::{Aim, Pass};
+use super::spread::{Fan, angle};
 
 /// A ray that meets the point.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +62,8 @@ pub(super) fn find(aim: &Aim, roots: &mut Vec<Root>) {
         let is_last = piece.cuts == MOST_CUTS || looks > MOST_PIECES;
         let is_known = aim.patch.turn() < STRAIGHT * f64::from(1_u32 << piece.cuts);
         let found = match piece.look(aim) {
-            _ if !is_known && !is_last => Search::Lost,
+            _ if !is_known && !is_last && piece.reaches(aim) => Search::Lost,
+            _ if !is_known && !is_last => Search::Outside,
             Look::Nothing => Search::Outside,
             Look::Steady(start) => newton(aim, start),
             Look::Folded if is_last => newton(aim, piece.centre()),
@@ -113,6 +116,15 @@ impl Piece {
             .map(|corners| Self { corners, cuts: self.cuts + 1 })
     }
 
+    /// False where the bounds of [`Fan`] tell that no ray of the piece comes to the point.
+    fn reaches(&self, aim: &Aim) -> bool {
+        let normals = self.corners.map(|uv| aim.patch.normal(uv));
+        let alpha = angle(aim.to_sun, DVec3::NEG_Z);
+        let Some(fan) = Fan::new(&normals, alpha, [aim.eta; 2]) else { return true };
+        let (places, slopes) = (self.corners.map(|uv| aim.patch.at(uv)), fan.slopes());
+        fan.is_lit() && Reach::new(places.into_iter(), &slopes).reaches(aim.x)
+    }
+
     fn look(&self, aim: &Aim) -> Look {
         let (at, between) = (self.corners.map(|uv| aim.miss(uv)), self.middles().map(|uv| aim.miss(uv)));
         let all = || at.iter().chain(&between);
@@ -120,7 +132,8 @@ impl Piece {
             return Look::Nothing;
         }
         let ([Some(a), Some(b), Some(c)], [Some(bc), Some(ca), Some(ab)]) = (at, between) else {
-            return Look::Folded;
+            // Light arrives from behind at a part of it.
+            return if self.reaches(aim) { Look::Folded } else { Look::Nothing };
         };
         let control = |middle: DVec2, p: DVec2, q: DVec2| 2.0 * middle - 0.5 * (p + q);
         let [bc, ca, ab] = [control(bc, b, c), control(ca, c, a), control(ab, a, b)];
@@ -200,7 +213,7 @@ mod tests {
     use super::super::patch::{Patch, SunFrame};
     use super::*;
     use crate::sampling::{SampleSeed, SampleStream};
-    use glam::{DVec3, Vec3};
+    use glam::Vec3;
 
     const ETA: f64 = 0.75;
 
