@@ -105,6 +105,18 @@ fn photons_change_no_byte_either() {
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
+/// The sun through moving water, looked for from every particle.
+#[test]
+fn beams_change_no_byte_either() {
+    let text = shipped_scene(4).replace("[render]\n", "[render]\nintegrator = \"beams\"\n");
+    let sun = "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n";
+    let folder = wobbling_in(&format!("{text}{sun}"));
+    let (sequence, refitted) = pictures(&folder, "0-2", 2);
+    assert_eq!((sequence.len(), refitted), (6, vec![false, true, true]));
+    assert_eq!(pictures(&folder, "0-2", 1).0, sequence, "one thread");
+    assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
+}
+
 /// Halves decide by sums in a fixed order; photon passes are looked at in between.
 #[test]
 fn a_target_changes_no_byte_on_any_number_of_threads() {

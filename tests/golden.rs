@@ -10,7 +10,7 @@ use std::path::Path;
 use common::reference::{blocks, compare, folder, scene, statistics, statistics_in};
 use common::render::{Prepared, Rendered, prepare};
 use floe::geometry::Ray;
-use floe::integrator::Scratch;
+use floe::integrator::{PreparedLight, Scratch};
 use floe::sampling::SampleStream;
 use floe::spectrum::Wavelengths;
 use glam::{DVec3, Vec3};
@@ -100,8 +100,14 @@ fn radiance_at(scene: &Prepared, x: f32, y: f32) -> Vec3 {
     let wavelengths = Wavelengths::for_mode(scene.frame.mode, 0.5);
     let stream = SampleStream::new(scene.sampling.seed, 0, 0, 0);
     let eye = scene.frame.views.opening.ray(x, y);
-    let sample =
-        scene.sampling.integrator.sample(&scene.frame, &mut scratch, &eye, &wavelengths, stream, None);
+    let sample = scene.sampling.integrator.sample(
+        &scene.frame,
+        &mut scratch,
+        &eye,
+        &wavelengths,
+        stream,
+        PreparedLight::default(),
+    );
     sample.radiance.truncate()
 }
 

@@ -9,7 +9,7 @@ use super::halves::HalfRounds;
 use super::ladder::Ladder;
 use super::stopping::{StoppedBy, Target};
 use crate::film::{FilmSample, Filter, FrameImage};
-use crate::integrator::{Counters, EyeSample, Integrator, PhotonPass, Scratch};
+use crate::integrator::{Beams, Counters, EyeSample, Integrator, PhotonPass, PreparedLight, Scratch};
 use crate::sampling::{SampleSeed, SampleStream};
 use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
@@ -90,7 +90,11 @@ pub fn accumulate(
     sampling: &Sampling,
     control: &dyn Control,
 ) -> Option<StoppedBy> {
-    let work = Work { frame, sampling, control };
+    let beams = match &sampling.integrator {
+        Integrator::Beams(_) => Beams::new(frame),
+        _ => None,
+    };
+    let work = Work { frame, sampling, control, beams: beams.as_ref() };
     if let Integrator::Photon(mapper) = &sampling.integrator {
         let seconds_left = control.seconds_left();
         let photons = mapper.prepare(frame, sampling.seed);
@@ -116,6 +120,7 @@ pub(super) struct Work<'a> {
     pub frame: &'a Frame,
     pub sampling: &'a Sampling,
     pub control: &'a dyn Control,
+    pub beams: Option<&'a Beams>,
 }
 
 impl Work<'_> {
@@ -127,7 +132,7 @@ impl Work<'_> {
         index: u32,
         photons: Option<&PhotonPass>,
     ) -> FilmSample {
-        let Self { frame, sampling, .. } = *self;
+        let Self { frame, sampling, beams, .. } = *self;
         let (x, y) = at;
         let mut stream = SampleStream::new(sampling.seed, x, y, index);
         let [u, v, w, t] = stream.next4();
@@ -143,7 +148,8 @@ impl Work<'_> {
             camera.ray(x, y)
         };
         let eye = eye.at_time(time);
-        let sample = sampling.integrator.sample(frame, scratch, &eye, &wavelengths, stream, photons);
+        let light = PreparedLight { photons, beams };
+        let sample = sampling.integrator.sample(frame, scratch, &eye, &wavelengths, stream, light);
         self.control.sampled(sample.radiance);
         film_sample(frame, (&camera, time), &sample, &wavelengths)
     }

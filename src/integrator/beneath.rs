@@ -24,7 +24,9 @@ impl<'a> Sample<'a> {
     pub(super) fn looked(&self, branch: &Branch, vertex: LitVertex, wi: Vec3) -> Looked {
         match self.looks_beneath(branch.medium, branch.interactions) {
             Some(beneath) => Looked::Beneath(balance(vertex.pdf_w, beneath.pdf_w(wi))),
-            None => Looked::Straight(vertex),
+            None if self.frame.lit[branch.medium.0 as usize] => Looked::Straight(vertex),
+            // The sun alone was looked for, through interfaces.
+            None => Looked::Not,
         }
     }
 

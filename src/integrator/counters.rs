@@ -17,6 +17,15 @@ pub struct Counters {
     pub astray_photons: u64,
     /// Rays traced towards lights.
     pub shadow_rays: u64,
+    /// Vertices at which the sun was looked for through refracting interfaces.
+    #[serde(default)]
+    pub beam_queries: u64,
+    /// Triangles that were tried there.
+    #[serde(default)]
+    pub beam_candidates: u64,
+    /// Ways of the sun that were found, whatever blocks them.
+    #[serde(default)]
+    pub beam_roots: u64,
     /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
     pub label_mismatches: u64,
     /// Samples whose radiance was not finite; they are left out of the mean.
@@ -64,6 +73,9 @@ impl AddAssign for Counters {
         self.photons += other.photons;
         self.astray_photons += other.astray_photons;
         self.shadow_rays += other.shadow_rays;
+        self.beam_queries += other.beam_queries;
+        self.beam_candidates += other.beam_candidates;
+        self.beam_roots += other.beam_roots;
         self.label_mismatches += other.label_mismatches;
         self.non_finite += other.non_finite;
         self.escaped_inside += other.escaped_inside;

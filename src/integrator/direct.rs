@@ -47,11 +47,20 @@ impl Sample<'_> {
     ) -> Lanes {
         let u = stream.next4();
         let frame = self.frame;
+        let mut sum = match self.beams_to(receiver) {
+            None => Lanes::ZERO,
+            Some(beams) => {
+                let v = stream.next4();
+                self.sun_through(beams, receiver, &response, [v[0], v[1]])
+            }
+        };
         if let Some(beneath) = self.looks_beneath(receiver.medium, receiver.interactions) {
-            return self.beneath(beneath, receiver, response, [u[0], u[1]]);
+            return sum + self.beneath(beneath, receiver, response, [u[0], u[1]]);
+        }
+        if !frame.lit[receiver.medium.0 as usize] {
+            return sum;
         }
         let lights = &frame.lights;
-        let mut sum = Lanes::ZERO;
         if let Some(sun) = lights.sun.as_ref().filter(|_| lamps) {
             let light = sun.sample([u[0], u[1]], self.wavelengths);
             sum += self.contribution(receiver, &response, &light, |_| 1.0);
@@ -74,6 +83,7 @@ impl Sample<'_> {
     pub(super) fn looks_for_lights(&self, medium: MediumId) -> bool {
         self.frame.looks_for_lights(medium)
             && (self.photons.is_none() || self.frame.beneath[medium.0 as usize].is_none())
+            || self.beams.is_some_and(|beams| beams.reach(medium))
     }
 
     /// True where eye paths find the light of the sky on their own.
@@ -99,23 +109,31 @@ impl Sample<'_> {
         unshadowed * self.visibility(receiver, light)
     }
 
-    /// Transmittance times (n_a / n_b)^2 of the boundaries on the straight way to a light; zero when blocked.
+    /// What is left on the straight way to a light.
     fn visibility(&mut self, receiver: &Receiver, light: &LightSample) -> Lanes {
         let origin = receiver.normal.map_or(receiver.position, |hit| hit.point.spawn(hit.ng, light.wi));
         let ray = Ray { t_max: light.distance, ..self.ray(origin, light.wi) };
         let ignored = Ignored([receiver.leaves, light.triangle.unwrap_or(u32::MAX)]);
+        self.left_along(&ray, ignored, (receiver.medium, receiver.insides))
+    }
+
+    /// Transmittance times (n_a / n_b)^2 of the boundaries along a ray that begins in a medium and meshes; zero when blocked.
+    pub(super) fn left_along(
+        &mut self,
+        ray: &Ray,
+        ignored: Ignored,
+        (medium, insides): (MediumId, Insides),
+    ) -> Lanes {
         self.scratch.counters.shadow_rays += 1;
         let blocked = if self.frame.needs.matched_interfaces {
-            self.find_crossings(&ray, ignored)
+            self.find_crossings(ray, ignored)
         } else {
-            self.frame.accel.occluded(&ray, ignored)
+            self.frame.accel.occluded(ray, ignored)
         };
         match blocked {
             true => Lanes::ZERO,
-            false if self.frame.needs.layers => {
-                self.transmittance_among_layers(receiver.medium, receiver.insides, &ray)
-            }
-            false => self.transmittance(receiver.medium, &ray),
+            false if self.frame.needs.layers => self.transmittance_among_layers(medium, insides, ray),
+            false => self.transmittance(medium, ray),
         }
     }
 

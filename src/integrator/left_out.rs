@@ -3,6 +3,13 @@
 use super::{Integrator, Scattered};
 use crate::scene::needs::{NeedLine, Needs};
 
+/// Of the sun's light, what beams do not carry.
+const BENT_TWICE: &str =
+    "sunlight through two or more refracting interfaces, or reflected before it gets through one";
+/// The same where meshes overlap.
+const LAYERS: &str =
+    "sunlight through the interfaces of meshes that overlap, or through two or more, or reflected before";
+
 impl Integrator {
     /// What a picture of a frame with these needs lacks.
     pub fn left_out(&self, needs: &Needs) -> Vec<&'static str> {
@@ -12,12 +19,22 @@ impl Integrator {
                 Scattered::Once => Some("light scattered more than once"),
                 Scattered::Ambient => Some("all scattered light but an ambient one"),
             },
+            Self::Beams(_) => None,
             Self::Photon(_) if !needs.turbid_air => return Vec::new(),
             Self::Photon(_) => None,
             Self::AmbientOcclusion(_) => return vec!["all but the openness of the first surface"],
         };
-        let of_the_sun = needs.sun_behind_interface.then_some("sunlight through refracting interfaces");
-        of_the_sun.into_iter().chain(of_scattering.filter(|_| needs.scattering)).collect()
+        let lacks = match self {
+            Self::Beams(_) if needs.layers => LAYERS,
+            Self::Beams(_) => BENT_TWICE,
+            _ => "sunlight through refracting interfaces",
+        };
+        needs
+            .sun_behind_interface
+            .then_some(lacks)
+            .into_iter()
+            .chain(of_scattering.filter(|_| needs.scattering))
+            .collect()
     }
 
     /// A line for each part of the renderer: what runs or is left out, and why.
@@ -30,6 +47,10 @@ impl Integrator {
                 false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_photons(needs) => {
                     NeedLine { used: true, because: "photons carry it", ..line }
                 }
+                false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_beams() => {
+                    let because = "all ways of it through one interface are found; it is left out beyond two, and where it was reflected before";
+                    NeedLine { used: true, because, ..line }
+                }
                 false => line,
             })
             .chain(self.photon_lines(needs))
@@ -38,6 +59,10 @@ impl Integrator {
 
     fn has_photons(&self, needs: &Needs) -> bool {
         matches!(self, Self::Photon(_)) && !needs.turbid_air
+    }
+
+    fn has_beams(&self) -> bool {
+        matches!(self, Self::Beams(_))
     }
 
     /// A line for each photon map.
@@ -76,7 +101,7 @@ impl Integrator {
             Self::Path(tracer) if tracer.scattered == Scattered::Ambient => {
                 Needs { scattering: false, direct_light: needs.direct_light && needs.diffuse, ..*needs }
             }
-            Self::Path(_) | Self::Photon(_) => *needs,
+            Self::Path(_) | Self::Beams(_) | Self::Photon(_) => *needs,
             Self::AmbientOcclusion(_) => Needs { motion: needs.motion, lens: needs.lens, ..Needs::default() },
         }
     }

@@ -7,6 +7,7 @@
 
 mod ahead;
 pub mod ambient_occlusion;
+pub mod beams;
 mod beneath;
 pub mod counters;
 mod diffuse;
@@ -29,6 +30,7 @@ mod walk;
 use glam::Vec3;
 
 pub use ambient_occlusion::AmbientOcclusion;
+pub use beams::Beams;
 pub use counters::Counters;
 pub use path::PathTracer;
 pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
@@ -85,6 +87,8 @@ pub struct Scratch {
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
     pub(crate) crossings: Vec<Hit>,
+    /// Ways of the sun through the current triangle.
+    pub(in crate::integrator) roots: Vec<beams::roots::Root>,
     /// Events of all samples so far.
     pub counters: Counters,
 }
@@ -107,11 +111,22 @@ impl Scratch {
     }
 }
 
+/// Light that was prepared for a frame or a pass, of which paths take their part.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PreparedLight<'a> {
+    /// The photons of the pass; without them photon mapping finds what path tracing does.
+    pub photons: Option<&'a PhotonPass>,
+    /// Through which triangles the sun is looked for.
+    pub beams: Option<&'a Beams>,
+}
+
 /// A way to compute the radiance of a sample.
 #[derive(Clone, Copy, Debug)]
 pub enum Integrator {
     /// Volumetric path tracing.
     Path(PathTracer),
+    /// Volumetric path tracing that finds the sun through one refracting interface ([`beams`]).
+    Beams(PathTracer),
     /// Progressive photon mapping.
     Photon(PhotonMapper),
     /// The open part of the hemisphere over the first surface.
@@ -129,6 +144,7 @@ impl Integrator {
         };
         match settings.integrator {
             IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path(Scattered::Always)),
+            IntegratorKind::Beams => Self::Beams(path(Scattered::Always)),
             IntegratorKind::SingleScattering => Self::Path(path(Scattered::Once)),
             IntegratorKind::Fog => Self::Path(path(Scattered::Ambient)),
             IntegratorKind::Photon => {
@@ -139,8 +155,6 @@ impl Integrator {
     }
 
     /// The radiance along an eye ray.
-    ///
-    /// `photons` are those of the pass; without them photon mapping finds what path tracing does.
     pub fn sample(
         &self,
         frame: &Frame,
@@ -148,11 +162,14 @@ impl Integrator {
         eye: &Ray,
         wavelengths: &Wavelengths,
         stream: SampleStream,
-        photons: Option<&PhotonPass>,
+        light: PreparedLight,
     ) -> EyeSample {
         match self {
-            Self::Path(tracer) => tracer.trace(frame, scratch, eye, wavelengths, stream, None),
-            Self::Photon(mapper) => mapper.path.trace(frame, scratch, eye, wavelengths, stream, photons),
+            Self::Path(tracer) => {
+                tracer.trace(frame, scratch, eye, wavelengths, stream, PreparedLight::default())
+            }
+            Self::Beams(tracer) => tracer.trace(frame, scratch, eye, wavelengths, stream, light),
+            Self::Photon(mapper) => mapper.path.trace(frame, scratch, eye, wavelengths, stream, light),
             Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, eye, stream),
         }
     }
@@ -165,6 +182,7 @@ impl Integrator {
                 Scattered::Once => "single-scattering",
                 Scattered::Ambient => "fog",
             },
+            Self::Beams(_) => "beams",
             Self::Photon(_) => "photon",
             Self::AmbientOcclusion(_) => "ambient-occlusion",
         }

@@ -8,12 +8,13 @@
 
 use glam::Vec3;
 
+use super::beams::Beams;
 use super::direct::Receiver;
 use super::dispersion::Carried;
 use super::flight::{Around, Event};
 use super::photon::{self, PhotonPass};
 use super::roulette::at_random;
-use super::{EyeSample, FirstHit, Scattered, Scratch};
+use super::{EyeSample, FirstHit, PreparedLight, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
 use crate::optics::medium::MediumId;
@@ -148,12 +149,14 @@ pub(super) struct Sample<'a> {
     pub(super) max_depth: u32,
     /// The photons of the pass, where there are any.
     pub(super) photons: Option<&'a PhotonPass>,
+    /// The triangles that bend light of the sun, where it is looked for through them.
+    pub(super) beams: Option<&'a Beams>,
     pub(super) radiance: Lanes,
     pub(super) first: Option<FirstHit>,
 }
 
 impl PathTracer {
-    /// Radiance along an eye ray, with the light of photons where there are any.
+    /// Radiance along an eye ray, with the light that was prepared for it.
     pub(super) fn trace(
         &self,
         frame: &Frame,
@@ -161,7 +164,7 @@ impl PathTracer {
         ray: &Ray,
         wavelengths: &Wavelengths,
         stream: SampleStream,
-        photons: Option<&PhotonPass>,
+        PreparedLight { photons, beams }: PreparedLight,
     ) -> EyeSample {
         scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
         let start = frame.start_of(ray);
@@ -184,6 +187,7 @@ impl PathTracer {
             time: ray.time,
             max_depth,
             photons,
+            beams,
             radiance: Lanes::ZERO,
             first: None,
         };
@@ -193,7 +197,8 @@ impl PathTracer {
             sample.scratch.lead(frame);
         }
         let is_left_out = cfg!(floe_without_scattering);
-        match (varied && !is_left_out, frame.needs.scattering && !is_left_out, frame.needs.direct_light) {
+        let direct = frame.needs.direct_light || beams.is_some();
+        match (varied && !is_left_out, frame.needs.scattering && !is_left_out, direct) {
             (false, false, false) => self.follow_all::<false, false, false>(&mut sample),
             (false, false, true) => self.follow_all::<false, true, false>(&mut sample),
             (false, true, false) => self.follow_all::<true, false, false>(&mut sample),

@@ -41,6 +41,12 @@ impl Sun {
         self.frame.n
     }
 
+    /// Half its angular diameter, in radians.
+    pub fn half_angle(&self) -> f32 {
+        let sine = self.sin_squared.sqrt();
+        crate::geometry::elementary::atan2(sine, 1.0 - self.one_minus_cos)
+    }
+
     /// Radiance from a direction: that of the disc, or nothing.
     pub fn radiance(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
         if self.contains(direction) { self.disc_radiance(wavelengths) } else { Lanes::ZERO }

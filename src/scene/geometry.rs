@@ -139,6 +139,22 @@ impl Geometry {
         surface_hit(hit, direction, &self.vertices_at(hit.triangle, time), normals)
     }
 
+    /// True where normals are interpolated over a triangle.
+    #[inline]
+    pub fn is_smooth(&self, triangle: u32) -> bool {
+        self.corners[triangle as usize] != Self::FLAT
+    }
+
+    /// The shading normals at the corners of a triangle at a time in frames, if it has any.
+    pub fn shading_normals(&self, triangle: u32, time: f32) -> Option<[Vec3; 3]> {
+        let corners = self.corners[triangle as usize];
+        let at = |i: u32| {
+            let change = self.normal_changes.get(i as usize).map_or(Vec3::ZERO, |change| *change * time);
+            self.normals[i as usize] + change
+        };
+        (corners != Self::FLAT).then(|| corners.map(at))
+    }
+
     /// The shading normals at the corners of a triangle when the shutter opens, if it has any.
     #[inline(always)]
     fn corner_normals(&self, hit: &Hit) -> Option<[Vec3; 3]> {

@@ -142,7 +142,7 @@ impl Needs {
                 Self::SUN,
                 false,
                 if self.sun_behind_interface {
-                    "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out; integrator = \"photon\" follows it"
+                    "the sun shines on a refracting interface, but a path tracer finds it beyond only as fireflies: its light there is left out; integrator = \"photon\" or \"beams\" follows it"
                 } else {
                     "no sun shines on a refracting interface"
                 },

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use floe::geometry::Ray;
-use floe::integrator::Scratch;
+use floe::integrator::{PreparedLight, Scratch};
 use floe::sampling::{SampleSeed, SampleStream};
 use floe::spectrum::{LaneMode, Lanes, Wavelengths};
 use glam::{DVec3, DVec4};
@@ -45,7 +45,14 @@ fn samples(scene: &Prepared, [eye, target]: [DVec3; 2], count: u32) -> Vec<DVec4
         // A pixel of its own for each, so that they are independent.
         let stream = SampleStream::new(SampleSeed::new(7), i & 1023, i >> 10, 0);
         let integrator = &scene.sampling.integrator;
-        let found = integrator.sample(&scene.frame, &mut scratch, &ray, &WAVELENGTHS, stream, None);
+        let found = integrator.sample(
+            &scene.frame,
+            &mut scratch,
+            &ray,
+            &WAVELENGTHS,
+            stream,
+            PreparedLight::default(),
+        );
         let is_right = scratch.counters.label_mismatches == astray;
         astray = scratch.counters.label_mismatches;
         is_right.then(|| found.radiance.as_dvec4())
@@ -327,8 +334,14 @@ fn noise(scene: &Prepared) -> [f64; 5] {
         let wavelengths = Wavelengths::for_mode(scene.frame.mode, u[0]);
         let target = glam::Vec3::new(0.3 * (u[1] - 0.5), 0.0, 0.3 * (u[2] - 0.5));
         let ray = Ray::new(from, (target - scene.frame.origin.as_vec3() - from).normalize());
-        let found =
-            scene.sampling.integrator.sample(&scene.frame, &mut scratch, &ray, &wavelengths, stream, None);
+        let found = scene.sampling.integrator.sample(
+            &scene.frame,
+            &mut scratch,
+            &ray,
+            &wavelengths,
+            stream,
+            PreparedLight::default(),
+        );
         let rgb = wavelengths.to_rgb(found.radiance).as_dvec3();
         sum += rgb;
         squares += rgb * rgb;

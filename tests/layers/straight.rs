@@ -1,6 +1,6 @@
 //! Beer and Lambert's law along straight rays: media of index 1 that only absorb, and no chance anywhere.
 
-use floe::integrator::Scratch;
+use floe::integrator::{PreparedLight, Scratch};
 use floe::sampling::{SampleSeed, SampleStream};
 use floe::spectrum::Wavelengths;
 use glam::{DQuat, DVec3, EulerRot};
@@ -63,7 +63,14 @@ fn check(name: &str, scene: &Prepared, bodies: &[(&TestMesh, f64)]) {
         let point = [(i % width) as f32 + 0.5, (i / width) as f32 + 0.5];
         let stream = SampleStream::new(SampleSeed::new(1), i, 0, 0);
         let ray = camera.ray(point[0], point[1]);
-        let found = scene.sampling.integrator.sample(frame, &mut scratch, &ray, &wavelengths, stream, None);
+        let found = scene.sampling.integrator.sample(
+            frame,
+            &mut scratch,
+            &ray,
+            &wavelengths,
+            stream,
+            PreparedLight::default(),
+        );
         let depth = depth(bodies, ray.origin.as_dvec3() + frame.origin, ray.direction.as_dvec3());
         let error = (f64::from(found.radiance.max_element()) / (-depth).exp() - 1.0).abs();
         within += u32::from(depth > 0.0);

@@ -116,6 +116,7 @@ impl Tracing<'_> {
             time: self.time,
             max_depth: self.max_depth,
             photons: None,
+            beams: None,
             radiance: Lanes::ZERO,
             first: None,
         }

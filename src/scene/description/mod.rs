@@ -405,6 +405,8 @@ pub enum IntegratorKind {
     Path,
     /// Progressive photon mapping.
     Photon,
+    /// Path tracing that finds the sun through one refracting interface.
+    Beams,
     /// Paths that turn at one particle at most.
     SingleScattering,
     /// Paths that turn at none: an ambient radiance is scattered in.

@@ -59,10 +59,11 @@ impl PhotonDescription {
     }
 }
 
-const INTEGRATORS: [(&str, IntegratorKind); 6] = [
+const INTEGRATORS: [(&str, IntegratorKind); 7] = [
     ("auto", IntegratorKind::Auto),
     ("path", IntegratorKind::Path),
     ("photon", IntegratorKind::Photon),
+    ("beams", IntegratorKind::Beams),
     ("single-scattering", IntegratorKind::SingleScattering),
     ("fog", IntegratorKind::Fog),
     ("ambient-occlusion", IntegratorKind::AmbientOcclusion),

@@ -1,0 +1,277 @@
+//! Which triangles may send light of the sun to a point.
+//!
+//! A tree of eight children a node over boxes of where triangles are and how their refracted rays slope, in the frame of the
+//! sun. Rays of a box come to the point x only if
+//!
+//! ```text
+//! x_st in [p_st] + [h] [e],   [h] = x_z - [p_z],   [h] above 0
+//! ```
+//! in intervals. So beams have no length, need not be cut into pieces, and nothing depends on how the surface lies: it is the
+//! hierarchy of positions and normals of Walter, Zhao, Holzschuch and Bala `[WALTER09]` for light of one direction, whose
+//! slopes say what normals do for a light at a point.
+
+use glam::{DVec3, Vec3};
+
+use super::spread::Slopes;
+
+/// Where the rays of something begin and how they slope.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Least and greatest s, t, depth, and slope in s and t.
+    least: [f32; AXES],
+    most: [f32; AXES],
+}
+
+const AXES: usize = 5;
+const WIDTH: usize = 8;
+/// The rounding of coordinates in single precision, twice over, for each side of a comparison.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
+/// Eight to the power of this is more than any mesh has triangles, were every node as lopsided as halving allows.
+const DEEPEST: usize = 16;
+
+impl Reach {
+    /// Of points and slopes.
+    pub(super) fn new(points: impl Iterator<Item = DVec3>, slopes: &Slopes) -> Self {
+        let e = ROUNDING;
+        let mut own = Self::NOTHING;
+        for p in points {
+            for (axis, value) in p.as_vec3().to_array().into_iter().enumerate() {
+                own.least[axis] = own.least[axis].min(value - e * value.abs());
+                own.most[axis] = own.most[axis].max(value + e * value.abs());
+            }
+        }
+        for axis in 0..2 {
+            let (least, most) = (slopes.least[axis] as f32, slopes.most[axis] as f32);
+            own.least[3 + axis] = (least - e * least.abs()).max(f32::MIN);
+            own.most[3 + axis] = (most + e * most.abs()).min(f32::MAX);
+        }
+        own
+    }
+
+    const NOTHING: Self = Self { least: [f32::INFINITY; AXES], most: [f32::NEG_INFINITY; AXES] };
+
+    fn union(mut self, other: &Self) -> Self {
+        for axis in 0..AXES {
+            self.least[axis] = self.least[axis].min(other.least[axis]);
+            self.most[axis] = self.most[axis].max(other.most[axis]);
+        }
+        self
+    }
+
+    /// False where none of its rays comes to a point.
+    pub(super) fn reaches(&self, x: DVec3) -> bool {
+        let far = x.z - f64::from(self.least[2]);
+        let near = (x.z - f64::from(self.most[2])).max(0.0);
+        let within = |axis: usize| {
+            let [least, most] = [self.least, self.most].map(|ends| f64::from(ends[3 + axis]));
+            let low = f64::from(self.least[axis]) + (near * least).min(far * least);
+            let high = f64::from(self.most[axis]) + (near * most).max(far * most);
+            low <= x[axis] && x[axis] <= high
+        };
+        far > 0.0 && within(0) && within(1)
+    }
+
+    fn middle(&self, axis: usize) -> f32 {
+        0.5 * self.least[axis] + 0.5 * self.most[axis]
+    }
+
+    /// The area that its rays cover so far behind it.
+    fn area(&self, depth: f32) -> f32 {
+        let wide = |k: usize| self.most[k] - self.least[k] + depth * (self.most[3 + k] - self.least[3 + k]);
+        wide(0) * wide(1)
+    }
+}
+
+/// The tree.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Index {
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    least: [[f32; WIDTH]; AXES],
+    most: [[f32; WIDTH]; AXES],
+    /// A node, or a leaf with [`LEAF`] set.
+    children: [u32; WIDTH],
+}
+
+const LEAF: u32 = 1 << 31;
+
+impl Index {
+    /// Over what the numbers 0, 1, ... stand for; light is looked for about so far behind it.
+    pub(super) fn new(all: &[Reach], depth: f32) -> Self {
+        let mut order: Vec<u32> = (0..all.len() as u32).collect();
+        let mut nodes = Vec::new();
+        if !order.is_empty() {
+            Builder { all, depth, nodes: &mut nodes }.node(&mut order);
+        }
+        Self { nodes }
+    }
+
+    /// Bytes that it occupies.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes)
+    }
+
+    /// Visits all whose rays may come to a point.
+    #[inline]
+    pub(super) fn each(&self, x: Vec3, mut visit: impl FnMut(u32)) {
+        let mut waiting = [0_u32; DEEPEST * WIDTH];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let node = &self.nodes[waiting[count] as usize];
+            let mut met = node.met(x);
+            while met != 0 {
+                let child = node.children[met.trailing_zeros() as usize];
+                met &= met - 1;
+                if child & LEAF == 0 {
+                    waiting[count] = child;
+                    count += 1;
+                } else {
+                    visit(child & !LEAF);
+                }
+            }
+        }
+    }
+}
+
+impl Node {
+    /// The children whose rays may come to a point, a bit each.
+    #[inline]
+    fn met(&self, x: Vec3) -> u32 {
+        let slack = ROUNDING * x.abs();
+        let mut near = [0.0_f32; WIDTH];
+        let mut far = [0.0_f32; WIDTH];
+        let mut met = [true; WIDTH];
+        for k in 0..WIDTH {
+            near[k] = (x.z - slack.z - self.most[2][k]).max(0.0);
+            far[k] = x.z + slack.z - self.least[2][k];
+            met[k] = far[k] > 0.0;
+        }
+        for (axis, (at, slack)) in [(x.x, slack.x), (x.y, slack.y)].into_iter().enumerate() {
+            for k in 0..WIDTH {
+                let (least, most) = (self.least[3 + axis][k], self.most[3 + axis][k]);
+                let low = self.least[axis][k] + (near[k] * least).min(far[k] * least);
+                let high = self.most[axis][k] + (near[k] * most).max(far[k] * most);
+                let slack = slack + ROUNDING * far[k];
+                met[k] &= (at + slack >= low) & (at - slack <= high);
+            }
+        }
+        met.iter().enumerate().fold(0, |bits, (k, met)| bits | u32::from(*met) << k)
+    }
+}
+
+struct Builder<'a> {
+    all: &'a [Reach],
+    depth: f32,
+    nodes: &'a mut Vec<Node>,
+}
+
+impl Builder<'_> {
+    /// A node over these, whose order it may change.
+    fn node(&mut self, order: &mut [u32]) -> u32 {
+        let number = self.nodes.len() as u32;
+        self.nodes.push(Node {
+            least: [[f32::INFINITY; WIDTH]; AXES],
+            most: [[f32::NEG_INFINITY; WIDTH]; AXES],
+            children: [0; WIDTH],
+        });
+        let mut parts = vec![order];
+        while parts.len() < WIDTH {
+            let (at, largest) =
+                parts.iter().map(|part| part.len()).enumerate().max_by_key(|p| p.1).unwrap_or((0, 1));
+            if largest < 2 {
+                break;
+            }
+            let part = parts.swap_remove(at);
+            let (left, right) = self.halves(part);
+            parts.extend([left, right]);
+        }
+        for (slot, part) in parts.into_iter().enumerate() {
+            let reach = self.around(part);
+            let child = if part.len() == 1 { part[0] | LEAF } else { self.node(part) };
+            let node = &mut self.nodes[number as usize];
+            node.children[slot] = child;
+            for axis in 0..AXES {
+                node.least[axis][slot] = reach.least[axis];
+                node.most[axis][slot] = reach.most[axis];
+            }
+        }
+        number
+    }
+
+    fn around(&self, part: &[u32]) -> Reach {
+        part.iter().fold(Reach::NOTHING, |all, i| all.union(&self.all[*i as usize]))
+    }
+
+    /// Halves by number, along the axis on which they cover least.
+    fn halves<'o>(&self, part: &'o mut [u32]) -> (&'o mut [u32], &'o mut [u32]) {
+        let half = part.len() / 2;
+        let cut = |part: &mut [u32], axis: usize| {
+            let middle = |i: &u32| self.all[*i as usize].middle(axis);
+            part.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.cmp(b)));
+        };
+        let mut best = (f32::INFINITY, 0);
+        for axis in 0..AXES {
+            cut(part, axis);
+            let [left, right] = [&part[..half], &part[half..]].map(|side| self.around(side).area(self.depth));
+            if left + right < best.0 {
+                best = (left + right, axis);
+            }
+        }
+        cut(part, best.1);
+        part.split_at_mut(half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{SampleSeed, SampleStream};
+    use glam::DVec2;
+
+    /// Points on rays from within the boxes: all boxes that they come from are found, and of the others but those which the
+    /// intervals cannot tell.
+    #[test]
+    fn everything_that_reaches_a_point_is_found() {
+        let numbers = |i: u32, k: u32| SampleStream::new(SampleSeed::new(9), i, k, 0).next4().map(f64::from);
+        let all: Vec<(DVec3, Slopes)> = (0..3000)
+            .map(|i| {
+                let ([x, y, z, _], [a, b, wide, _]) = (numbers(i, 0), numbers(i, 1));
+                let (middle, wide) = (DVec2::new(a, b) - 0.5, DVec2::splat(0.02 * wide));
+                (
+                    DVec3::new(10.0 * x, 10.0 * y, 0.3 * z),
+                    Slopes { least: middle - wide, most: middle + wide },
+                )
+            })
+            .collect();
+        let corner = |p: DVec3| [p, p + DVec3::new(0.1, 0.0, 0.01), p + DVec3::new(0.0, 0.1, -0.01)];
+        let reaches: Vec<Reach> =
+            all.iter().map(|(p, slopes)| Reach::new(corner(*p).into_iter(), slopes)).collect();
+        let index = Index::new(&reaches, 2.0);
+        let mut visited = 0;
+        for i in 0..3000_u32 {
+            let [u, v, h, e] = numbers(i, 2);
+            let (p, slopes) = all[i as usize];
+            let c = corner(p);
+            let from = c[0] + (c[1] - c[0]) * u * (1.0 - v) + (c[2] - c[0]) * v;
+            let slope = slopes.least + (slopes.most - slopes.least) * DVec2::new(e, h);
+            let x = from + slope.extend(1.0) * (4.0 * h);
+            let mut found = Vec::new();
+            index.each(x.as_vec3(), |k| found.push(k));
+            assert!(found.contains(&i), "{i}");
+            visited += found.len();
+            found.sort_unstable();
+            found.dedup();
+            assert!(found.len() <= 3000);
+        }
+        assert!(visited < 3000 * 100, "{visited} of 9 million");
+    }
+
+    #[test]
+    fn nothing_is_found_in_nothing() {
+        Index::new(&[], 1.0).each(Vec3::ZERO, |_| panic!("found"));
+    }
+}
