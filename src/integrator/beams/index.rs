@@ -13,6 +13,7 @@
 use glam::{DVec3, Vec3};
 
 use super::spread::Slopes;
+use crate::geometry::machine::{Work, in_wide_registers};
 
 /// Where the rays of something begin and how they slope.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +77,7 @@ impl Reach {
     }
 
     /// The area that its rays cover so far behind it.
-    fn area(&self, depth: f32) -> f32 {
+    pub(super) fn area(&self, depth: f32) -> f32 {
         let wide = |k: usize| self.most[k] - self.least[k] + depth * (self.most[3 + k] - self.least[3 + k]);
         wide(0) * wide(1)
     }
@@ -99,14 +100,14 @@ struct Node {
 const LEAF: u32 = 1 << 31;
 
 impl Index {
-    /// Over what the numbers 0, 1, ... stand for; light is looked for about so far behind it.
-    pub(super) fn new(all: &[Reach], depth: f32) -> Self {
-        let mut order: Vec<u32> = (0..all.len() as u32).collect();
-        let mut nodes = Vec::new();
-        if !order.is_empty() {
-            Builder { all, depth, nodes: &mut nodes }.node(&mut order);
+    /// Over all, of which it gives the order that it visits them by; light is looked for about so far behind them.
+    pub(super) fn new(all: &[Reach], depth: f32) -> (Self, Vec<u32>) {
+        let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
+        let mut builder = Builder { all, depth, nodes: Vec::new(), order: Vec::new() };
+        if !numbers.is_empty() {
+            builder.node(&mut numbers);
         }
-        Self { nodes }
+        (Self { nodes: builder.nodes }, builder.order)
     }
 
     /// Bytes that it occupies.
@@ -114,14 +115,30 @@ impl Index {
         size_of_val(&*self.nodes)
     }
 
-    /// Visits all whose rays may come to a point.
-    #[inline]
-    pub(super) fn each(&self, x: Vec3, mut visit: impl FnMut(u32)) {
+    /// Lists the places in the order of all whose rays may come to a point.
+    pub(super) fn find(&self, x: Vec3, found: &mut Vec<u32>) {
+        found.clear();
+        in_wide_registers(Search { index: self, x, found });
+    }
+}
+
+struct Search<'a> {
+    index: &'a Index,
+    x: Vec3,
+    found: &'a mut Vec<u32>,
+}
+
+impl Work for Search<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { index, x, found } = self;
         let mut waiting = [0_u32; DEEPEST * WIDTH];
-        let mut count = usize::from(!self.nodes.is_empty());
+        let mut count = usize::from(!index.nodes.is_empty());
         while count > 0 {
             count -= 1;
-            let node = &self.nodes[waiting[count] as usize];
+            let node = &index.nodes[waiting[count] as usize];
             let mut met = node.met(x);
             while met != 0 {
                 let child = node.children[met.trailing_zeros() as usize];
@@ -130,7 +147,7 @@ impl Index {
                     waiting[count] = child;
                     count += 1;
                 } else {
-                    visit(child & !LEAF);
+                    found.push(child & !LEAF);
                 }
             }
         }
@@ -139,7 +156,7 @@ impl Index {
 
 impl Node {
     /// The children whose rays may come to a point, a bit each.
-    #[inline]
+    #[inline(always)]
     fn met(&self, x: Vec3) -> u32 {
         let slack = ROUNDING * x.abs();
         let mut near = [0.0_f32; WIDTH];
@@ -166,19 +183,20 @@ impl Node {
 struct Builder<'a> {
     all: &'a [Reach],
     depth: f32,
-    nodes: &'a mut Vec<Node>,
+    nodes: Vec<Node>,
+    order: Vec<u32>,
 }
 
 impl Builder<'_> {
     /// A node over these, whose order it may change.
-    fn node(&mut self, order: &mut [u32]) -> u32 {
+    fn node(&mut self, numbers: &mut [u32]) -> u32 {
         let number = self.nodes.len() as u32;
         self.nodes.push(Node {
             least: [[f32::INFINITY; WIDTH]; AXES],
             most: [[f32::NEG_INFINITY; WIDTH]; AXES],
             children: [0; WIDTH],
         });
-        let mut parts = vec![order];
+        let mut parts = vec![numbers];
         while parts.len() < WIDTH {
             let (at, largest) =
                 parts.iter().map(|part| part.len()).enumerate().max_by_key(|p| p.1).unwrap_or((0, 1));
@@ -191,7 +209,12 @@ impl Builder<'_> {
         }
         for (slot, part) in parts.into_iter().enumerate() {
             let reach = self.around(part);
-            let child = if part.len() == 1 { part[0] | LEAF } else { self.node(part) };
+            let child = if let [number] = part {
+                self.order.push(*number);
+                (self.order.len() as u32 - 1) | LEAF
+            } else {
+                self.node(part)
+            };
             let node = &mut self.nodes[number as usize];
             node.children[slot] = child;
             for axis in 0..AXES {
@@ -250,8 +273,8 @@ mod tests {
         let corner = |p: DVec3| [p, p + DVec3::new(0.1, 0.0, 0.01), p + DVec3::new(0.0, 0.1, -0.01)];
         let reaches: Vec<Reach> =
             all.iter().map(|(p, slopes)| Reach::new(corner(*p).into_iter(), slopes)).collect();
-        let index = Index::new(&reaches, 2.0);
-        let mut visited = 0;
+        let (index, order) = Index::new(&reaches, 2.0);
+        let (mut visited, mut places) = (0, Vec::new());
         for i in 0..3000_u32 {
             let [u, v, h, e] = numbers(i, 2);
             let (p, slopes) = all[i as usize];
@@ -259,8 +282,8 @@ mod tests {
             let from = c[0] + (c[1] - c[0]) * u * (1.0 - v) + (c[2] - c[0]) * v;
             let slope = slopes.least + (slopes.most - slopes.least) * DVec2::new(e, h);
             let x = from + slope.extend(1.0) * (4.0 * h);
-            let mut found = Vec::new();
-            index.each(x.as_vec3(), |k| found.push(k));
+            index.find(x.as_vec3(), &mut places);
+            let mut found: Vec<u32> = places.iter().map(|k| order[*k as usize]).collect();
             assert!(found.contains(&i), "{i}");
             visited += found.len();
             found.sort_unstable();
@@ -272,6 +295,8 @@ mod tests {
 
     #[test]
     fn nothing_is_found_in_nothing() {
-        Index::new(&[], 1.0).each(Vec3::ZERO, |_| panic!("found"));
+        let mut found = vec![1];
+        Index::new(&[], 1.0).0.find(Vec3::ZERO, &mut found);
+        assert!(found.is_empty());
     }
 }

@@ -47,17 +47,20 @@ impl<'a> Sample<'a> {
         let shine = Shine { to_sun: light.wi, local, power: light.radiance / light.pdf_w };
         let x = beams.sun.local(receiver.position);
         self.scratch.counters.beam_queries += 1;
+        let mut candidates = std::mem::take(&mut self.scratch.candidates);
+        beams.index.find(x.as_vec3(), &mut candidates);
         let mut sum = Lanes::ZERO;
-        beams.index.each(x.as_vec3(), |number| {
-            sum += self.sun_through_one(beams, beams.beams[number as usize], receiver, response, &shine);
-        });
+        for number in &candidates {
+            sum += self.sun_through_one(beams, &beams.beams[*number as usize], receiver, response, &shine);
+        }
+        self.scratch.candidates = candidates;
         sum
     }
 
     fn sun_through_one(
         &mut self,
         beams: &Beams,
-        beam: Beam,
+        beam: &Beam,
         receiver: &Receiver,
         response: &impl Fn(Vec3) -> (Lanes, f32),
         shine: &Shine,
@@ -84,7 +87,10 @@ impl<'a> Sample<'a> {
             let eta = etas[lane];
             let x = beams.sun.local(receiver.position);
             let aim = Aim { patch: &patch, x, to_sun: shine.local, eta: f64::from(eta) };
-            roots::find(&aim, &mut roots);
+            roots.clear();
+            if roots::may_meet(&aim, &beam.piece, beam.bulge.into()) {
+                roots::find(&aim, &beam.piece, &mut roots);
+            }
             for root in &roots {
                 sum += shown * self.sun_along(beams, (beam, &v), &aim, root, receiver, response, shine);
             }
@@ -101,7 +107,7 @@ impl<'a> Sample<'a> {
     fn sun_along(
         &mut self,
         beams: &Beams,
-        (beam, v): (Beam, &[Vec3; 3]),
+        (beam, v): (&Beam, &[Vec3; 3]),
         aim: &Aim,
         root: &Root,
         receiver: &Receiver,

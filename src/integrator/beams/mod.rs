@@ -14,7 +14,9 @@
 //!
 //! | step | page |
 //! |---|---|
-//! | once a frame: where each triangle can send light of the whole disc | `spread.rs` |
+//! | once a frame: the triangles that bend light, in pieces where their normals turn much | `gather.rs`, `piece.rs` |
+//! | but those that stand in the shade of something opaque | `shade.rs` |
+//! | where each can send light of the whole disc | `spread.rs` |
 //! | a hierarchy over these, asked for a point | `index.rs` |
 //! | all solutions g = 0 in a triangle | `patch.rs`, `roots.rs` |
 //! | what they bring, and what is in the way | `light.rs` |
@@ -27,22 +29,26 @@
 //! Light that is bent twice or reflected on its way is left out, as is that through meshes that overlap others. A path that
 //! sees the disc through interfaces alone has it as before, and one that was lit never sees it: nothing counts twice.
 
+mod gather;
 mod index;
 mod light;
 mod patch;
+mod piece;
 pub(super) mod roots;
+mod shade;
 mod spread;
 
-use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::geometry::triangle::scaled_normal;
 use crate::optics::medium::MediumId;
 use crate::scene::frame::Frame;
-use crate::scene::surface::{MediumPair, Surface};
+use crate::scene::surface::Surface;
 use crate::spectrum::Wavelengths;
+use gather::Gatherer;
 use index::{Index, Reach};
 use patch::SunFrame;
-use spread::{Fan, angle};
+use piece::Piece;
+use shade::Shade;
 
 /// The triangles that bend light of the sun, and where they can send it.
 #[derive(Clone, Debug)]
@@ -54,13 +60,17 @@ pub struct Beams {
     reached: Vec<bool>,
 }
 
-/// A triangle that bends light about its interpolated normals, or about its own.
+/// A triangle, or a part of one, that bends light about its interpolated normals, or about its own.
 #[derive(Clone, Copy, Debug)]
 struct Beam {
     triangle: u32,
     /// The sun is on its front.
     front: bool,
     shaded: bool,
+    /// The part of it, where its normals turn too much for the whole.
+    piece: Piece,
+    /// How far slopes are from what is linear between its corners, at most.
+    bulge: f32,
 }
 
 /// Wavelengths at which indices are looked up: so many times four.
@@ -70,33 +80,28 @@ impl Beams {
     /// Those of a frame; `None` without any.
     pub fn new(frame: &Frame) -> Option<Self> {
         let sun = frame.lights.sun.as_ref()?;
+        let depth = 0.5 * frame.accel.bounds().size().max_element();
         let gatherer = Gatherer {
             frame,
             sun: SunFrame::new(sun.direction()),
+            shade: Shade::new(frame, sun),
             alpha: f64::from(sun.half_angle()),
             indices: indices(frame),
+            depth,
         };
-        let mut beams = Vec::new();
-        let mut reaches = Vec::new();
+        let (beams, reaches): (Vec<Beam>, Vec<Reach>) = (0..frame.geometry.triangles.len() as u32)
+            .into_par_iter()
+            .flat_map_iter(|triangle| gatherer.beams(triangle))
+            .unzip();
         let mut reached = vec![false; frame.media.len()];
-        for triangle in 0..frame.geometry.triangles.len() as u32 {
-            let Surface::Interface(pair) = frame.surface(triangle) else { continue };
-            for front in [true, false] {
-                let (outer, inner) = pair.crossed(front);
-                if pair.matched || !frame.lit[outer.0 as usize] || frame.reflects_beyond(pair, front) {
-                    continue;
-                }
-                gatherer.beams(triangle, pair, front, |beam, reach| {
-                    reached[inner.0 as usize] = true;
-                    beams.push(beam);
-                    reaches.push(reach);
-                });
+        for beam in &beams {
+            if let Surface::Interface(pair) = frame.surface(beam.triangle) {
+                reached[pair.crossed(beam.front).1.0 as usize] = true;
             }
         }
-        let depth = 0.5 * frame.accel.bounds().size().max_element();
-        let index = Index::new(&reaches, depth);
-        let own = Self { sun: gatherer.sun, beams, index, reached };
-        (!own.beams.is_empty()).then_some(own)
+        let (index, order) = Index::new(&reaches, depth);
+        let beams: Vec<Beam> = order.into_iter().map(|number| beams[number as usize]).collect();
+        (!beams.is_empty()).then_some(Self { sun: gatherer.sun, beams, index, reached })
     }
 
     /// True where light is looked for in a medium.
@@ -104,7 +109,8 @@ impl Beams {
         self.reached[medium.0 as usize]
     }
 
-    /// Triangles through which light is looked for; those whose own normal may be taken for the interpolated one twice.
+    /// Triangles, or pieces of them, through which light is looked for; those whose own normal may be taken for the
+    /// interpolated one twice.
     pub fn len(&self) -> usize {
         self.beams.len()
     }
@@ -133,73 +139,4 @@ fn indices(frame: &Frame) -> Vec<[f64; 2]> {
         [f64::from(least - beyond), f64::from(most + beyond)]
     };
     frame.media.iter().map(of_medium).collect()
-}
-
-struct Gatherer<'a> {
-    frame: &'a Frame,
-    sun: SunFrame,
-    alpha: f64,
-    indices: Vec<[f64; 2]>,
-}
-
-impl Gatherer<'_> {
-    /// The beams of one side of a triangle.
-    fn beams(&self, triangle: u32, pair: &MediumPair, front: bool, mut add: impl FnMut(Beam, Reach)) {
-        let side = if front { 1.0 } else { -1.0 };
-        let geometry = &self.frame.geometry;
-        let times = [self.frame.views.time(0.0), self.frame.views.time(1.0)];
-        let corners = times.map(|time| geometry.vertices_at(triangle, time));
-        let local = corners.map(|v| v.map(|p| self.sun.local(p)));
-        let eta = self.eta(pair, front);
-        let own = self.own_normals(triangle, times, side);
-        let Some(flat) = Fan::new(&own, self.alpha, eta).filter(Fan::is_lit) else { return };
-        let points = || local.into_iter().flatten();
-        let beam = Beam { triangle, front, shaded: false };
-        let normals = times.map(|time| geometry.shading_normals(triangle, time));
-        let [Some(first), Some(last)] = normals else {
-            add(beam, Reach::new(points(), &flat.slopes()));
-            return;
-        };
-        let normals: Vec<DVec3> = first.into_iter().chain(last).map(|n| self.sun.local(n) * side).collect();
-        let fan = Fan::new(&normals, self.alpha, eta);
-        if let Some(fan) = fan.filter(Fan::is_lit) {
-            add(Beam { shaded: true, ..beam }, Reach::new(points(), &fan.slopes()));
-        }
-        if !fan.is_some_and(|fan| is_sound(&fan, &flat)) {
-            add(beam, Reach::new(points(), &flat.slopes()));
-        }
-    }
-
-    fn eta(&self, pair: &MediumPair, front: bool) -> [f64; 2] {
-        let (outer, inner) = pair.crossed(front);
-        let [outer, inner] = [outer, inner].map(|id| self.indices[id.0 as usize]);
-        [outer[0] / inner[1], outer[1] / inner[0]]
-    }
-
-    /// Vectors whose cone holds the triangle's normal at all times: while its corners move evenly it is quadratic in time, with
-    /// these Bernstein coefficients.
-    fn own_normals(&self, triangle: u32, [first, last]: [f32; 2], side: f64) -> [DVec3; 3] {
-        let at = |time: f32| {
-            let v = self.frame.geometry.vertices_at(triangle, time);
-            self.sun.local(scaled_normal(&v)).normalize_or_zero() * side
-        };
-        if first == last {
-            return [at(first); 3];
-        }
-        let scaled = |time: f32| {
-            self.sun.local(scaled_normal(&self.frame.geometry.vertices_at(triangle, time))) * side
-        };
-        let [start, middle, end] = [first, 0.5 * (first + last), last].map(scaled);
-        [start, 2.0 * middle - 0.5 * (start + end), end]
-    }
-}
-
-/// True when no ray of the sun can be bent about the triangle's own normal in the place of interpolated ones: the normals, the
-/// light and what is reflected about them on the far side all keep to their side of the triangle.
-fn is_sound(shading: &Fan, own: &Fan) -> bool {
-    let quarter = std::f64::consts::FRAC_PI_2 - 1e-4;
-    let lean = angle(shading.normal, own.normal) + shading.phi + own.phi;
-    let sun = angle(own.normal, DVec3::NEG_Z) + own.phi + own.alpha;
-    let lit = angle(shading.normal, DVec3::NEG_Z) + shading.phi + shading.alpha;
-    lean + shading.steepest() < quarter && sun < quarter && lit < quarter
 }

@@ -13,6 +13,7 @@
 
 use glam::{DMat2, DVec2, DVec3, Vec3};
 
+use super::piece::Piece;
 use crate::geometry::Frame as Basis;
 
 /// The frame of the sun.
@@ -79,10 +80,10 @@ impl Patch {
         self.bends == [DVec3::ZERO; 2]
     }
 
-    /// By how much the normals at its corners differ, at most.
-    pub(super) fn turn(&self) -> f64 {
-        let [a, b] = self.bends;
-        a.length_squared().max(b.length_squared()).max(a.distance_squared(b)).sqrt()
+    /// By how much the normals at the corners of a piece differ, at most.
+    pub(super) fn turn(&self, piece: &Piece) -> f64 {
+        let [a, b, c] = piece.corners.map(|uv| self.normal(uv));
+        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt()
     }
 
     /// The interpolated normal, of any length.
@@ -146,6 +147,15 @@ impl Aim<'_> {
         let cos_t = squared.sqrt();
         let direction = -self.eta * self.to_sun + (self.eta * cos_i - cos_t) * normal;
         Some(Bent { direction, cos_i, cos_t, normal, length })
+    }
+
+    /// The slope of the ray at (u, v), also where light arrives from behind; none where it is reflected totally.
+    pub(super) fn slope(&self, uv: DVec2) -> Option<DVec2> {
+        let normal = self.patch.normal(uv).normalize_or_zero();
+        let mu = self.to_sun.dot(normal);
+        let squared = 1.0 - self.eta * self.eta * (1.0 - mu * mu);
+        let d = -self.eta * self.to_sun + (self.eta * mu - squared.sqrt()) * normal;
+        (squared > 0.0 && d.z > 0.0).then(|| d.truncate() / d.z)
     }
 
     /// By how much the ray at (u, v) misses the point.

@@ -19,6 +19,7 @@ use glam::{DVec2, DVec3};
 
 use super::index::Reach;
 use super::patch::{Aim, Pass};
+use super::piece::Piece;
 use super::spread::{Fan, angle};
 
 /// A ray that meets the point.
@@ -34,33 +35,30 @@ const MOST_CUTS: u32 = 6;
 /// And no more pieces are looked at: at a focus all rays meet the point.
 const MOST_PIECES: u32 = 400;
 /// Over pieces whose normals differ by more than this, in radians, the miss is not taken for quadratic.
-const STRAIGHT: f64 = 0.4;
+pub(super) const STRAIGHT: f64 = 0.4;
 /// Greatest over least coefficient of the determinant where no fold is feared.
 const STEADY: f64 = 16.0;
-/// Roots closer to an edge than this are on it, in barycentric weights; Newton's method ends at about 1e-12.
-const ON_EDGE: f64 = 1e-9;
 /// Roots closer than this are the same, found from two pieces.
 const SAME: f64 = 1e-8;
 /// No edge of a scene has this very direction.
 const SHIFT: DVec2 = DVec2::new(1.0, 0.618_033_988_749_895);
 
-/// Finds all roots in a triangle.
-pub(super) fn find(aim: &Aim, roots: &mut Vec<Root>) {
+/// Finds all roots in a piece of a triangle.
+pub(super) fn find(aim: &Aim, whole: &Piece, roots: &mut Vec<Root>) {
     roots.clear();
-    let whole = Piece { corners: [DVec2::ZERO, DVec2::X, DVec2::Y], cuts: 0 };
     if aim.patch.is_flat() {
         // Linear: one step is all.
-        add(&newton(aim, whole.centre()), roots);
+        add(&newton(aim, whole.centre()), whole, roots);
         return;
     }
     // Each cut puts four in the place of one.
-    let mut pieces = [whole; 3 * MOST_CUTS as usize + 1];
+    let mut pieces = [Piece { cuts: 0, ..*whole }; 3 * MOST_CUTS as usize + 1];
     let (mut waiting, mut looks) = (1, 0);
     while waiting > 0 {
         (waiting, looks) = (waiting - 1, looks + 1);
         let piece = pieces[waiting];
         let is_last = piece.cuts == MOST_CUTS || looks > MOST_PIECES;
-        let is_known = aim.patch.turn() < STRAIGHT * f64::from(1_u32 << piece.cuts);
+        let is_known = aim.patch.turn(&piece) < STRAIGHT;
         let found = match piece.look(aim) {
             _ if !is_known && !is_last && piece.reaches(aim) => Search::Lost,
             _ if !is_known && !is_last => Search::Outside,
@@ -69,7 +67,7 @@ pub(super) fn find(aim: &Aim, roots: &mut Vec<Root>) {
             Look::Folded if is_last => newton(aim, piece.centre()),
             Look::Folded => Search::Lost,
         };
-        add(&found, roots);
+        add(&found, whole, roots);
         if matches!(found, Search::Lost) && !is_last {
             pieces[waiting..waiting + 4].copy_from_slice(&piece.cut());
             waiting += 4;
@@ -77,18 +75,40 @@ pub(super) fn find(aim: &Aim, roots: &mut Vec<Root>) {
     }
 }
 
-fn add(found: &Search, roots: &mut Vec<Root>) {
-    let Search::Found(root) = *found else { return };
-    if is_within(&root) && roots.iter().all(|other| other.uv.distance_squared(root.uv) > SAME * SAME) {
-        roots.push(root);
+/// False where the rays at the corners of a piece tell that none comes to the point; `bulge` is how far slopes are from what is
+/// linear between these, at most.
+///
+/// g is p_st + (x_z - p_z) e, in which p is linear and a product of two linear functions is off by a third of what they change by.
+pub(super) fn may_meet(aim: &Aim, piece: &Piece, bulge: f64) -> bool {
+    let at = piece.corners.map(|uv| aim.patch.at(uv));
+    let depth = at.map(|p| aim.x.z - p.z);
+    let [least, most] = [f64::min, f64::max].map(|f| f(f(depth[0], depth[1]), depth[2]));
+    if most <= 0.0 {
+        return false;
     }
+    let [Some(a), Some(b), Some(c)] = piece.corners.map(|uv| aim.slope(uv)) else { return true };
+    let turn = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let margin = bulge * most.max(-least) + (most - least) * turn / 3.0 + 1e-13 * aim.x.abs().max_element();
+    let miss = |k: usize, slope: DVec2| (aim.x - at[k]).truncate() - depth[k] * slope;
+    is_near([miss(0, a), miss(1, b), miss(2, c)], margin)
 }
 
-/// A part of the triangle.
-#[derive(Clone, Copy)]
-struct Piece {
-    corners: [DVec2; 3],
-    cuts: u32,
+/// False where a triangle is farther than a margin from 0, beyond one of its edges.
+fn is_near([a, b, c]: [DVec2; 3], margin: f64) -> bool {
+    let side = (b - a).perp_dot(c - a);
+    let beyond = |from: DVec2, to: DVec2| {
+        let away = from.perp_dot(to);
+        let away = if side < 0.0 { -away } else { away };
+        away < 0.0 && away * away > margin * margin * from.distance_squared(to)
+    };
+    !(beyond(a, b) || beyond(b, c) || beyond(c, a))
+}
+
+fn add(found: &Search, whole: &Piece, roots: &mut Vec<Root>) {
+    let Search::Found(root) = *found else { return };
+    if is_within(&root, whole) && roots.iter().all(|other| other.uv.distance_squared(root.uv) > SAME * SAME) {
+        roots.push(root);
+    }
 }
 
 /// What is known of a piece.
@@ -100,22 +120,6 @@ enum Look {
 }
 
 impl Piece {
-    fn centre(&self) -> DVec2 {
-        (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
-    }
-
-    /// The middles of the edges opposite to the corners.
-    fn middles(&self) -> [DVec2; 3] {
-        let [a, b, c] = self.corners;
-        [0.5 * (b + c), 0.5 * (c + a), 0.5 * (a + b)]
-    }
-
-    fn cut(&self) -> [Self; 4] {
-        let ([a, b, c], [bc, ca, ab]) = (self.corners, self.middles());
-        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
-            .map(|corners| Self { corners, cuts: self.cuts + 1 })
-    }
-
     /// False where the bounds of [`Fan`] tell that no ray of the piece comes to the point.
     fn reaches(&self, aim: &Aim) -> bool {
         let normals = self.corners.map(|uv| aim.patch.normal(uv));
@@ -197,15 +201,9 @@ fn newton(aim: &Aim, start: DVec2) -> Search {
     Search::Lost
 }
 
-/// True for a root in the triangle, or on those of its edges that belong to it.
-fn is_within(root: &Root) -> bool {
-    if root.pass.depth <= 0.0 {
-        return false;
-    }
-    let by = -(root.pass.jacobian.inverse() * SHIFT);
-    let within = |weight: f64, change: f64| if weight.abs() <= ON_EDGE { change > 0.0 } else { weight > 0.0 };
-    let DVec2 { x: u, y: v } = root.uv;
-    within(u, by.x) && within(v, by.y) && within(1.0 - u - v, -by.x - by.y)
+/// True for a root in a piece, or on those of its edges that belong to it.
+fn is_within(root: &Root, piece: &Piece) -> bool {
+    root.pass.depth > 0.0 && piece.holds(root.uv, -(root.pass.jacobian.inverse() * SHIFT))
 }
 
 #[cfg(test)]
@@ -279,7 +277,7 @@ mod tests {
             // Up to twice the distance at which such normals gather light.
             let x = lit(&patch, to_sun, uv, 6.0 * depth / f64::from(lean));
             let aim = Aim { patch: &patch, x, to_sun, eta: ETA };
-            find(&aim, &mut roots);
+            find(&aim, &Piece::WHOLE, &mut roots);
             assert!(roots.iter().any(|root| root.uv.distance(uv) < 1e-6), "{i}: {uv} is not among {roots:?}");
             let expected = by_force(&aim, 100);
             several += usize::from(expected > 1);
@@ -323,7 +321,7 @@ mod tests {
                 let x = lit(&patches[first], to_sun, DVec2::new(weights[1], weights[2]), 2.0);
                 let mut count = 0;
                 for patch in &patches {
-                    find(&Aim { patch, x, to_sun, eta: ETA }, &mut roots);
+                    find(&Aim { patch, x, to_sun, eta: ETA }, &Piece::WHOLE, &mut roots);
                     count += roots.len();
                 }
                 // With flat triangles light crosses behind their edges, or leaves a gap.

@@ -15,8 +15,19 @@
 //! tan(psi - a) to tan(psi + a),   psi = atan2(D_s, D_z),   sin(a) = sin(beta) / sqrt(D_s^2 + D_z^2)
 //! ```
 //! No refraction turns light by more than pi/2 - asin(min(eta, 1 / eta)), which bounds all slopes, also where nothing else does.
+//!
+//! Where normals turn little the slopes at the corners tell more. With m = sum l_i m_i, n = m / |m|, tau the greatest distance
+//! of two m_i over the least |m|, mu = w . n and c = cos_t, along a line of the triangle
+//!
+//! ```text
+//! |n'| <= tau,   |n''| <= sqrt(5) tau^2,   d = -eta w + f n,   f = eta mu - c,   f' = eta (1 - eta mu / c),   f'' = eta^2 (eta^2 - 1) / c^3
+//! |d'| <= sqrt(f^2 + f'^2) tau,   |d''| <= (|f''| + (2 + sqrt(5)) |f'| + sqrt(5) |f|) tau^2
+//! |e''| <= |d''| / d_z^2 + 2 |d'|^2 / d_z^3,      |e - sum l_i e_i| <= max |e''| / 4
+//! ```
+//! for the slope e = d_st / d_z, as |d| = 1 and half the sum of l_i l_j |m_i - m_j|^2 over all pairs is below a quarter of tau^2.
+//! All of f, f', f'' and 1 / d_z are greatest at the greatest angle of incidence.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3};
 
@@ -25,6 +36,16 @@ use glam::{DVec2, DVec3};
 pub(super) struct Slopes {
     pub(super) least: DVec2,
     pub(super) most: DVec2,
+}
+
+impl Slopes {
+    /// Those of all refracted rays, whatever the normals are.
+    pub(super) fn widest(eta: [f64; 2], alpha: f64) -> Self {
+        let turned = eta.map(|eta| FRAC_PI_2 - libm::asin(eta.min(1.0 / eta)));
+        let widest = turned[0].max(turned[1]) + alpha;
+        let bound = if widest < FRAC_PI_2 - ROUNDING { libm::tan(widest) } else { f64::MAX };
+        Self { least: DVec2::splat(-bound), most: DVec2::splat(bound) }
+    }
 }
 
 /// Rounding of what bounds are computed from: single precision has 6e-8.
@@ -41,6 +62,10 @@ pub(super) struct Fan {
     pub(super) alpha: f64,
     /// Least and greatest index on the side of the sun over that beyond.
     pub(super) eta: [f64; 2],
+    /// tau of the head.
+    tau: f64,
+    /// Least and greatest slope of rays from the middle of the disc about the normals that it was made of.
+    corners: [DVec2; 2],
 }
 
 impl Fan {
@@ -48,7 +73,20 @@ impl Fan {
     pub(super) fn new(normals: &[DVec3], alpha: f64, eta: [f64; 2]) -> Option<Self> {
         let normal = normals.iter().map(|n| n.normalize_or_zero()).sum::<DVec3>().try_normalize()?;
         let phi = normals.iter().map(|n| angle(normal, *n)).fold(0.0, f64::max) + ROUNDING;
-        (phi < FRAC_PI_2).then_some(Self { normal, phi, alpha: alpha + ROUNDING, eta })
+        if phi >= FRAC_PI_2 {
+            return None;
+        }
+        let shortest = normals.iter().map(|n| n.dot(normal)).fold(f64::MAX, f64::min);
+        let pairs = normals.iter().flat_map(|a| normals.iter().map(|b| a.distance(*b)));
+        let tau = pairs.fold(0.0, f64::max) / shortest + ROUNDING;
+        let mut corners = [DVec2::MAX, DVec2::MIN];
+        for n in normals {
+            for eta in eta {
+                let slope = slope_about(n.normalize_or_zero(), eta);
+                corners = [corners[0].min(slope), corners[1].max(slope)];
+            }
+        }
+        Some(Self { normal, phi, alpha: alpha + ROUNDING, eta, tau, corners })
     }
 
     /// Least and greatest angle of incidence; none where all light comes from behind.
@@ -71,34 +109,97 @@ impl Fan {
 
     /// Bounds of all slopes of refracted rays.
     pub(super) fn slopes(&self) -> Slopes {
-        let turned = self.eta.map(|eta| FRAC_PI_2 - libm::asin(eta.min(1.0 / eta)));
-        let widest = turned[0].max(turned[1]) + self.alpha;
-        let bound = if widest < FRAC_PI_2 - ROUNDING { libm::tan(widest) } else { f64::MAX };
-        let all = Slopes { least: DVec2::splat(-bound), most: DVec2::splat(bound) };
-        match self.cone().and_then(|(direction, beta)| slopes_of_cone(direction, beta)) {
-            None => all,
-            Some(own) => Slopes { least: own.least.max(all.least), most: own.most.min(all.most) },
-        }
+        let of_cone = self.cone().and_then(|(direction, beta)| slopes_of_cone(direction, beta));
+        let of_corners = self.bends().map(|bends| {
+            let [least, most] = self.corners;
+            let beyond = bends.bulge + bends.by_ray + ROUNDING;
+            Slopes { least: least - beyond, most: most + beyond }
+        });
+        let all = Slopes::widest(self.eta, self.alpha);
+        of_cone
+            .into_iter()
+            .chain(of_corners)
+            .fold(all, |all, own| Slopes { least: own.least.max(all.least), most: own.most.min(all.most) })
     }
 
-    /// A cone that holds the refracted rays; none near total reflection or where light comes from behind.
+    /// How far slopes are from what is linear between the corners, at most; infinite where nothing tells.
+    pub(super) fn bulge(&self) -> f64 {
+        self.bends().map_or(f64::INFINITY, |bends| bends.bulge)
+    }
+
+    /// What curves and widens the slopes; none near total reflection.
+    fn bends(&self) -> Option<Bends> {
+        let greatest = (angle(self.normal, DVec3::NEG_Z) + self.phi + self.alpha).min(PI);
+        let (sin, mu) = (libm::sin(greatest.min(FRAC_PI_2)), libm::cos(greatest));
+        let mut all = Bends { bulge: 0.0, by_ray: 0.0 };
+        for eta in self.eta {
+            let least_squared = 1.0 - eta * eta * sin * sin;
+            if least_squared < 1e-3 {
+                return None;
+            }
+            // Where normals face away from the sun c grows again, and what bounds the rest goes on.
+            let (least_c, c) = (least_squared.sqrt(), (1.0 - eta * eta * (1.0 - mu * mu)).sqrt());
+            let f = eta * mu - c;
+            let f1 = eta * (1.0 - eta * mu / c);
+            let f2 = eta * eta * (eta * eta - 1.0) / least_c.powi(3);
+            let d_z = eta - f * mu - self.alpha;
+            if d_z < 0.1 {
+                return None;
+            }
+            let root = 5.0_f64.sqrt();
+            let d2 = f2.abs() + (2.0 + root) * f1.abs() + root * f.abs();
+            let e2 = d2 / d_z.powi(2) + 2.0 * (f * f + f1 * f1) / d_z.powi(3);
+            let by_ray = eta.max(eta * mu.max(0.0) / least_c) * self.alpha / d_z.powi(2);
+            all = Bends {
+                bulge: all.bulge.max(0.25 * e2 * self.tau * self.tau),
+                by_ray: all.by_ray.max(by_ray),
+            };
+        }
+        Some(all)
+    }
+
+    /// A cone that holds the refracted rays; none near total reflection.
+    ///
+    /// Where the middle normal faces away from the sun, the nearest one that light still grazes takes its place: it is no
+    /// farther from any normal that is lit.
     fn cone(&self) -> Option<(DVec3, f64)> {
         let [_, greatest] = self.incidence()?;
-        let middle = refracted(self.normal, 0.5 * (self.eta[0] + self.eta[1]))?;
+        let normal = self.normal.with_z(self.normal.z.min(0.0)).try_normalize()?;
+        let middle = refracted(normal, 0.5 * (self.eta[0] + self.eta[1]))?;
         let mut beta = 0.0_f64;
         for eta in self.eta {
             let (sine, cos_i) = (eta * libm::sin(greatest), libm::cos(greatest));
             if sine >= 1.0 - ROUNDING {
                 return None;
             }
-            let by_ray = eta * cos_i / ((1.0 - sine) * (1.0 + sine)).sqrt();
-            let own = (1.0 - by_ray).abs().max((1.0 - eta).abs()) * self.phi
+            let cos_t = ((1.0 - sine) * (1.0 + sine)).sqrt();
+            let by_ray = eta * cos_i / cos_t;
+            // A normal that one point of the disc grazes may face away from another.
+            let from_behind =
+                if greatest < FRAC_PI_2 { 0.0 } else { 1.0 + eta * libm::sin(self.alpha) / cos_t };
+            let own = (1.0 - by_ray).abs().max((1.0 - eta).abs()).max(from_behind) * self.phi
                 + by_ray.max(eta) * self.alpha
-                + angle(middle, refracted(self.normal, eta)?);
+                + angle(middle, refracted(normal, eta)?);
             beta = beta.max(own);
         }
         Some((middle, beta + ROUNDING))
     }
+}
+
+/// How far slopes are from those of the middle of the disc, linear between the corners.
+struct Bends {
+    /// Because normals turn.
+    bulge: f64,
+    /// Because the disc is wide.
+    by_ray: f64,
+}
+
+/// The slope of a ray from the middle of the disc behind a normal, also of one that faces away.
+fn slope_about(normal: DVec3, eta: f64) -> DVec2 {
+    let mu = -normal.z;
+    let c = (1.0 - eta * eta * (1.0 - mu * mu)).max(0.0).sqrt();
+    let d = DVec3::new(0.0, 0.0, eta) + (eta * mu - c) * normal;
+    d.truncate() / d.z
 }
 
 /// Slopes of a cone; none where it reaches a right angle from the sun's light.
@@ -121,7 +222,7 @@ fn slopes_of_cone(direction: DVec3, beta: f64) -> Option<Slopes> {
 fn refracted(normal: DVec3, eta: f64) -> Option<DVec3> {
     let cos_i = -normal.z;
     let squared = 1.0 - eta * eta * (1.0 - cos_i * cos_i);
-    (cos_i > 0.0 && squared > 0.0)
+    (cos_i >= 0.0 && squared > 0.0)
         .then(|| DVec3::new(0.0, 0.0, eta) + (eta * cos_i - squared.sqrt()) * normal)
 }
 

@@ -1,0 +1,195 @@
+//! The triangles of a frame that bend light of the sun, and where they can send it.
+//!
+//! A triangle that is long, or whose normals turn much, lights a thin strip across a wide box. It is cut into halves, each
+//! with a box of its own, as long as these cover much less.
+
+use glam::{DVec2, DVec3};
+
+use super::Beam;
+use super::index::Reach;
+use super::patch::SunFrame;
+use super::piece::Piece;
+use super::shade::Shade;
+use super::spread::{Fan, Slopes, angle};
+use crate::geometry::triangle::scaled_normal;
+use crate::scene::frame::Frame;
+use crate::scene::surface::{MediumPair, Surface};
+
+/// Halves must cover less than this part of the whole.
+const GAIN: f32 = 0.7;
+/// Triangles that cover less than so many times their own area behind them are not worth a try.
+const COMPACT: f32 = 3.0;
+/// Slopes that are farther than this from linear tell too little.
+const LOOSE: f32 = 0.02;
+/// Triangles are cut so often, at most.
+const MOST_CUTS: u32 = 8;
+
+pub(super) struct Gatherer<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) sun: SunFrame,
+    pub(super) shade: Shade<'a>,
+    /// Half angle of the disc.
+    pub(super) alpha: f64,
+    /// Least and greatest index of each medium.
+    pub(super) indices: Vec<[f64; 2]>,
+    /// How far behind triangles light is looked for, about.
+    pub(super) depth: f32,
+}
+
+/// A triangle at the first and the last moment, in the frame of the sun; once where these are the same.
+struct Turning {
+    corners: Vec<[DVec3; 3]>,
+    /// None where they are not interpolated.
+    normals: Vec<[DVec3; 3]>,
+    /// Its own.
+    own: Fan,
+    eta: [f64; 2],
+}
+
+impl Turning {
+    /// The corner opposite to the edge of a piece along which normals turn most.
+    fn steadiest(&self, piece: &Piece) -> usize {
+        let turn = |corner: usize| {
+            let [from, to] = [(corner + 1) % 3, (corner + 2) % 3].map(|k| piece.corners[k]);
+            let apart = |of_time: &[DVec3; 3]| mixed(of_time, from).distance(mixed(of_time, to));
+            self.normals.iter().map(apart).fold(0.0, f64::max)
+        };
+        (0..3).max_by(|a, b| turn(*a).total_cmp(&turn(*b))).unwrap_or(0)
+    }
+}
+
+impl Gatherer<'_> {
+    /// The beams of both sides of a triangle.
+    pub(super) fn beams(&self, triangle: u32) -> Vec<(Beam, Reach)> {
+        let mut found = Vec::new();
+        let frame = self.frame;
+        let Surface::Interface(pair) = frame.surface(triangle) else { return found };
+        for front in [true, false] {
+            let outer = pair.crossed(front).0;
+            if pair.matched || !frame.lit[outer.0 as usize] || frame.reflects_beyond(pair, front) {
+                continue;
+            }
+            let Some(turning) = self.turning(triangle, pair, front) else { continue };
+            let whole = Beam { triangle, front, shaded: false, piece: Piece::WHOLE, bulge: 0.0 };
+            if !turning.normals.is_empty() {
+                self.pieces(&turning, Beam { shaded: true, ..whole }, &mut found);
+            }
+            self.pieces(&turning, whole, &mut found);
+        }
+        found
+    }
+
+    /// The triangle as the sun sees it; none where it shines on its other side only.
+    fn turning(&self, triangle: u32, pair: &MediumPair, front: bool) -> Option<Turning> {
+        let side = if front { 1.0 } else { -1.0 };
+        let geometry = &self.frame.geometry;
+        let ends = [self.frame.views.time(0.0), self.frame.views.time(1.0)];
+        let times = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
+        let eta = self.eta(pair, front);
+        let own = Fan::new(&self.own_normals(triangle, ends, side), self.alpha, eta).filter(Fan::is_lit)?;
+        let corners = times.iter().map(|&t| geometry.vertices_at(triangle, t).map(|p| self.sun.local(p)));
+        let normals = times.iter().filter_map(|&t| geometry.shading_normals(triangle, t));
+        let normals = normals.map(|all| all.map(|n| self.sun.local(n) * side));
+        Some(Turning { corners: corners.collect(), normals: normals.collect(), own, eta })
+    }
+
+    /// Those of a piece, in halves where its rays are within wide bounds.
+    fn pieces(&self, turning: &Turning, beam: Beam, found: &mut Vec<(Beam, Reach)>) {
+        let Some((beam, reach)) = self.piece(turning, beam) else { return };
+        if self.shade.covers(beam.triangle, &beam.piece) {
+            return;
+        }
+        if beam.piece.cuts < MOST_CUTS
+            && let Some(halves) = self.halves(turning, &beam, reach.area(self.depth))
+        {
+            for piece in halves {
+                self.pieces(turning, Beam { piece, ..beam }, found);
+            }
+            return;
+        }
+        found.push((beam, reach));
+    }
+
+    /// Halves of a piece that covers so much, where these cover much less or it turns too much to tell.
+    fn halves(&self, turning: &Turning, beam: &Beam, area: f32) -> Option<[Piece; 2]> {
+        if beam.bulge > LOOSE {
+            return Some(beam.piece.halves(turning.steadiest(&beam.piece)));
+        }
+        if area < COMPACT * self.own_area(turning, &beam.piece) {
+            return None;
+        }
+        let covered = |halves: &[Piece; 2]| {
+            let halves = halves.iter().filter_map(|&piece| self.piece(turning, Beam { piece, ..*beam }));
+            halves.map(|(_, reach)| reach.area(self.depth)).sum::<f32>()
+        };
+        let ways = [0, 1, 2].map(|corner| beam.piece.halves(corner)).map(|halves| (covered(&halves), halves));
+        let best = ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        best.filter(|best| best.0 < GAIN * area).map(|best| best.1)
+    }
+
+    /// Bounds of a piece; none where it bends no light.
+    fn piece(&self, turning: &Turning, beam: Beam) -> Option<(Beam, Reach)> {
+        let of_piece = |all: &[[DVec3; 3]]| -> Vec<DVec3> {
+            all.iter().flat_map(|of_time| beam.piece.corners.map(|uv| mixed(of_time, uv))).collect()
+        };
+        let shading = || Fan::new(&of_piece(&turning.normals), self.alpha, turning.eta);
+        let (slopes, bulge) = if beam.shaded {
+            match shading() {
+                Some(fan) if !fan.is_lit() => return None,
+                Some(fan) => (fan.slopes(), fan.bulge()),
+                None => (Slopes::widest(turning.eta, self.alpha), f64::INFINITY),
+            }
+        } else if shading().is_some_and(|fan| is_sound(&fan, &turning.own)) {
+            return None;
+        } else {
+            (turning.own.slopes(), 0.0)
+        };
+        let reach = Reach::new(of_piece(&turning.corners).into_iter(), &slopes);
+        Some((Beam { bulge: bulge as f32, ..beam }, reach))
+    }
+
+    /// About what a piece of a flat triangle lights.
+    fn own_area(&self, turning: &Turning, piece: &Piece) -> f32 {
+        let [a, b, c] = piece.corners.map(|uv| mixed(&turning.corners[0], uv).truncate());
+        let blur = 2.0 * self.alpha * f64::from(self.depth);
+        ((b - a).perp_dot(c - a).abs() + blur * blur) as f32
+    }
+
+    fn eta(&self, pair: &MediumPair, front: bool) -> [f64; 2] {
+        let (outer, inner) = pair.crossed(front);
+        let [outer, inner] = [outer, inner].map(|id| self.indices[id.0 as usize]);
+        [outer[0] / inner[1], outer[1] / inner[0]]
+    }
+
+    /// Vectors whose cone holds the triangle's normal at all times: while its corners move evenly it is quadratic in time, with
+    /// these Bernstein coefficients.
+    fn own_normals(&self, triangle: u32, [first, last]: [f32; 2], side: f64) -> [DVec3; 3] {
+        let at = |time: f32| {
+            let v = self.frame.geometry.vertices_at(triangle, time);
+            self.sun.local(scaled_normal(&v)).normalize_or_zero() * side
+        };
+        if first == last {
+            return [at(first); 3];
+        }
+        let scaled = |time: f32| {
+            self.sun.local(scaled_normal(&self.frame.geometry.vertices_at(triangle, time))) * side
+        };
+        let [start, middle, end] = [first, 0.5 * (first + last), last].map(scaled);
+        [start, 2.0 * middle - 0.5 * (start + end), end]
+    }
+}
+
+/// True when no ray of the sun can be bent about the triangle's own normal in the place of interpolated ones: the normals, the
+/// light and what is reflected about them on the far side all keep to their side of the triangle.
+fn is_sound(shading: &Fan, own: &Fan) -> bool {
+    let quarter = std::f64::consts::FRAC_PI_2 - 1e-4;
+    let lean = angle(shading.normal, own.normal) + shading.phi + own.phi;
+    let sun = angle(own.normal, DVec3::NEG_Z) + own.phi + own.alpha;
+    let lit = angle(shading.normal, DVec3::NEG_Z) + shading.phi + shading.alpha;
+    lean + shading.steepest() < quarter && sun < quarter && lit < quarter
+}
+
+/// What is linear over a triangle.
+fn mixed([a, b, c]: &[DVec3; 3], uv: DVec2) -> DVec3 {
+    *a + (*b - *a) * uv.x + (*c - *a) * uv.y
+}
