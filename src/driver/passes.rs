@@ -14,14 +14,14 @@ use super::ladder::Ladder;
 use super::stopping::{Pace, StoppedBy, Target};
 use super::tiles::Work;
 use crate::film::{PixelAccumulator, REPLICATES, TileRect, estimate_error};
-use crate::integrator::{Counters, PhotonFrame, PhotonPass, Scratch};
+use crate::integrator::{Counters, Emitters, Pass, Scratch};
 
 impl Work<'_> {
     /// Passes until there are all, or it is told to stop.
     pub(super) fn passes(
         &self,
         accumulation: &mut Accumulation,
-        of_all: &PhotonFrame,
+        emitters: &Emitters,
         seconds_left: Option<f64>,
     ) -> Option<StoppedBy> {
         let Accumulation { rects, parts, .. } = accumulation;
@@ -36,7 +36,7 @@ impl Work<'_> {
             if let Some(reason) = self.ends(accumulation, index, &pace) {
                 return Some(reason);
             }
-            let (photons, events) = of_all.pass(self.frame, index, &|| self.control.stops())?;
+            let (photons, events) = emitters.pass(self.frame, index, &|| self.control.stops())?;
             let tiles = accumulation.parts.par_iter_mut().zip(&accumulation.rects);
             let left = tiles.filter(|(part, _)| part.passes == index);
             left.for_each_init(Scratch::default, |scratch, (part, rect)| {
@@ -80,7 +80,7 @@ impl Work<'_> {
         rect: TileRect,
         scratch: &mut Scratch,
         index: u32,
-        photons: &PhotonPass,
+        photons: &Pass,
     ) -> bool {
         scratch.counters = Counters::default();
         for (pixel, at) in part.sums.iter_mut().zip(rect.pixels()).skip(part.ahead) {

@@ -9,7 +9,7 @@ use super::halves::HalfRounds;
 use super::ladder::Ladder;
 use super::stopping::{StoppedBy, Target};
 use crate::film::{FilmSample, Filter, FrameImage};
-use crate::integrator::{Beams, Counters, EyeSample, Integrator, PhotonPass, PreparedLight, Scratch};
+use crate::integrator::{Beams, Counters, EyeSample, Integrator, Pass, PreparedLight, Scratch};
 use crate::sampling::{SampleSeed, SampleStream};
 use crate::scene::camera::Camera;
 use crate::scene::description::RenderDescription;
@@ -95,13 +95,9 @@ pub fn accumulate(
         _ => None,
     };
     let work = Work { frame, sampling, control, beams: beams.as_ref() };
-    if let Integrator::Photon(mapper) = &sampling.integrator {
-        let seconds_left = control.seconds_left();
-        let photons = mapper.prepare(frame, sampling.seed);
-        // Else nothing emits photons, or nothing takes them.
-        if photons.count() > 0 {
-            return work.passes(accumulation, &photons, seconds_left);
-        }
+    let seconds_left = control.seconds_left();
+    if let Some(emitters) = sampling.integrator.emitters(frame, beams.as_ref(), sampling.seed) {
+        return work.passes(accumulation, &emitters, seconds_left);
     }
     match sampling.target {
         None => work.uniform(accumulation),
@@ -124,21 +120,21 @@ pub(super) struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Sample `index` of a pixel; `photons` are those of its pass, whose wavelengths and time it takes.
+    /// Sample `index` of a pixel; its wavelengths and time are those of its pass, where it has one.
     pub(super) fn sample(
         &self,
         scratch: &mut Scratch,
         at: (u32, u32),
         index: u32,
-        photons: Option<&PhotonPass>,
+        pass: Option<&Pass>,
     ) -> FilmSample {
         let Self { frame, sampling, beams, .. } = *self;
         let (x, y) = at;
         let mut stream = SampleStream::new(sampling.seed, x, y, index);
         let [u, v, w, t] = stream.next4();
         let offset = sampling.filter.sample([u, v]);
-        let wavelengths = photons.map_or_else(|| frame.wavelengths(w, &mut stream), |pass| pass.wavelengths);
-        let time = photons.map_or_else(|| frame.views.time(t), |pass| pass.time);
+        let own = |stream: &mut SampleStream| (frame.wavelengths(w, stream), frame.views.time(t));
+        let (wavelengths, time) = pass.map_or_else(|| own(&mut stream), Pass::common);
         let camera = frame.views.at(time);
         let (x, y) = (x as f32 + 0.5 + offset.x, y as f32 + 0.5 + offset.y);
         let eye = if camera.has_lens() {
@@ -148,7 +144,8 @@ impl Work<'_> {
             camera.ray(x, y)
         };
         let eye = eye.at_time(time);
-        let light = PreparedLight { photons, beams };
+        let light =
+            pass.map_or(PreparedLight { beams, ..PreparedLight::default() }, |pass| pass.light(beams));
         let sample = sampling.integrator.sample(frame, scratch, &eye, &wavelengths, stream, light);
         self.control.sampled(sample.radiance);
         film_sample(frame, (&camera, time), &sample, &wavelengths)

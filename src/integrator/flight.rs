@@ -151,7 +151,24 @@ impl Sample<'_> {
             return Event::Particle(to_particle);
         }
         let t_max = to_particle + rounding(branch.origin, to_particle);
-        let found = self.nearest_on_way::<VARIED>(branch, &medium, t_max);
+        let strays = if SCATTERING { self.strays_in(branch) } else { None };
+        let asks_whole = strays.is_some() && branch.arrival.specular_from_eye;
+        let reach = if asks_whole { f32::INFINITY } else { t_max };
+        let found = self.nearest_on_way::<VARIED>(branch, &medium, reach);
+        if let Some(strays) = strays {
+            let to_surface = found.map_or(f32::INFINITY, |hit| hit.t);
+            match &flight {
+                Some(flight) if !asks_whole => {
+                    let up_to = (to_surface.min(to_particle), found);
+                    self.add_strays(strays, branch, up_to, |length| medium.pass_weight(flight, length));
+                }
+                _ => {
+                    let up_to = (to_surface, found);
+                    self.add_strays(strays, branch, up_to, |length| medium.transmittance(length));
+                }
+            }
+        }
+        let found = found.filter(|hit| hit.t <= t_max);
         if found.is_none()
             && let Some(flight) = &flight
             && to_particle.is_finite()
@@ -198,6 +215,10 @@ impl Sample<'_> {
         let clearing = &mut self.scratch.around.clearing;
         let was_near = clearing.widths == 1.0;
         let survival = clearing.traced_to(point, medium.sigma_t.max_element(), &self.frame.accel, self.time);
+        if clearing.is_there() && self.strays.is_some() {
+            let radius = self.clear_of_strays(point, self.scratch.around.clearing.radius);
+            self.scratch.around.clearing.radius = if radius > 0.0 { radius } else { -1.0 };
+        }
         if survival < 1.0 && was_near && self.ends_somewhere(branch.medium) {
             self.scratch.counters.escaped_inside += 1;
         }

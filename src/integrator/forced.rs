@@ -24,6 +24,10 @@ impl Sample<'_> {
         let endless = self.ray(branch.origin, branch.direction);
         let found = self.nearest_on_way::<VARIED>(branch, &medium, f32::INFINITY);
         let length = self.length::<VARIED>(branch, found.map_or(f32::INFINITY, |hit| hit.t));
+        if let Some(strays) = self.strays_in(branch) {
+            let up_to = (found.map_or(f32::INFINITY, |hit| hit.t), found);
+            self.add_strays(strays, branch, up_to, |length| medium.transmittance(length));
+        }
         let mut scattered = *branch;
         scattered.stream = branch.stream.fork(2);
         // It waits for its turn, so no flight may be drawn for it here; the other has a surface before it.

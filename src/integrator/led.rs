@@ -50,7 +50,12 @@ impl Sample<'_> {
             self.scratch.counters.untraced += 1;
         } else {
             let t_max = distance + rounding(branch.origin, distance);
-            if let Some(hit) = self.nearest(branch, &Ray { t_max, ..ray }) {
+            let found = self.nearest(branch, &Ray { t_max, ..ray });
+            if let Some(strays) = self.strays_in(branch) {
+                let up_to = (found.map_or(distance, |hit| hit.t.min(distance)), found);
+                self.add_strays(strays, branch, up_to, |length| flight.pass_weight(&medium, length));
+            }
+            if let Some(hit) = found {
                 branch.throughput *= flight.pass_weight(&medium, hit.t);
                 self.scratch.around.clearing = Clearing::NONE;
                 return Event::Surface(hit);

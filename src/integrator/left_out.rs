@@ -3,7 +3,10 @@
 use super::{Integrator, Scattered};
 use crate::scene::needs::{NeedLine, Needs};
 
-/// Of the sun's light, what beams do not carry.
+/// Of the sun's light, what neither beams nor photons beside them carry.
+const ON_HALF_SPACES: &str =
+    "sunlight that comes to media seen as half spaces through two or more refracting interfaces, or mirrored";
+/// What beams do not carry, where there are no photons.
 const BENT_TWICE: &str =
     "sunlight through two or more refracting interfaces, or reflected before it gets through one";
 /// The same where meshes overlap.
@@ -19,6 +22,9 @@ impl Integrator {
                 Scattered::Once => Some("light scattered more than once"),
                 Scattered::Ambient => Some("all scattered light but an ambient one"),
             },
+            Self::Beams(_) if !needs.turbid_air => {
+                return if needs.half_spaces { vec![ON_HALF_SPACES] } else { Vec::new() };
+            }
             Self::Beams(_) => None,
             Self::Photon(_) if !needs.turbid_air => return Vec::new(),
             Self::Photon(_) => None,
@@ -48,7 +54,14 @@ impl Integrator {
                     NeedLine { used: true, because: "photons carry it", ..line }
                 }
                 false if line.part == Needs::SUN && needs.sun_behind_interface && self.has_beams() => {
-                    let because = "all ways of it through one interface are found; it is left out beyond two, and where it was reflected before";
+                    let because = match needs.turbid_air {
+                        false => {
+                            "all ways of it through one interface are found, and photons carry what is bent twice or mirrored"
+                        }
+                        true => {
+                            "all ways of it through one interface are found; it is left out beyond two, and where it was reflected before"
+                        }
+                    };
                     NeedLine { used: true, because, ..line }
                 }
                 false => line,
@@ -69,8 +82,10 @@ impl Integrator {
     fn photon_lines(&self, needs: &Needs) -> [NeedLine; 3] {
         let emits = match self {
             Self::Photon(mapper) => Some(needs.lamps || mapper.carries_sky(needs)),
+            Self::Beams(_) => Some(needs.sun_behind_interface),
             _ => None,
         };
+        let is_alone = !self.has_beams();
         let takes = |part, needed: &[(bool, &'static str)], because| {
             let lacking = needed.iter().find(|(is_there, _)| !is_there).map(|(_, why)| *why);
             match (emits, lacking) {
@@ -84,13 +99,14 @@ impl Integrator {
         let diffuse = (needs.diffuse, "no diffuse surface takes them");
         let specular = (needs.specular, "nothing bends or mirrors light");
         let scattering = (needs.scattering, "no medium in the frame scatters");
+        let global = (is_alone, "photons end where light is scattered");
         [
             takes(
                 "caustic photons",
                 &[air, diffuse, specular],
                 "specular surfaces turn light onto diffuse ones",
             ),
-            takes("global photons", &[air, diffuse], "light is scattered onto diffuse surfaces"),
+            takes("global photons", &[air, global, diffuse], "light is scattered onto diffuse surfaces"),
             takes("volume photons", &[air, scattering], "a medium in the frame scatters"),
         ]
     }

@@ -20,10 +20,12 @@ mod interface;
 mod layers;
 mod led;
 mod left_out;
+mod pass;
 pub mod path;
 pub mod photon;
 mod roulette;
 pub mod scattered;
+pub mod strays;
 mod vertex;
 mod walk;
 
@@ -32,9 +34,11 @@ use glam::Vec3;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use beams::Beams;
 pub use counters::Counters;
+pub use pass::{Emitters, Pass};
 pub use path::PathTracer;
 pub use photon::{PhotonFrame, PhotonMapper, PhotonPass};
 pub use scattered::Scattered;
+pub use strays::{StrayFrame, StrayPass};
 
 use crate::accel::Hit;
 use crate::geometry::Ray;
@@ -120,6 +124,8 @@ pub struct PreparedLight<'a> {
     pub photons: Option<&'a PhotonPass>,
     /// Through which triangles the sun is looked for.
     pub beams: Option<&'a Beams>,
+    /// The photons of the pass beside them.
+    pub strays: Option<&'a StrayPass>,
 }
 
 /// A way to compute the radiance of a sample.
@@ -127,8 +133,9 @@ pub struct PreparedLight<'a> {
 pub enum Integrator {
     /// Volumetric path tracing.
     Path(PathTracer),
-    /// Volumetric path tracing that finds the sun through one refracting interface ([`beams`]).
-    Beams(PathTracer),
+    /// Volumetric path tracing that finds the sun through one refracting interface ([`beams`]), and what of it is bent
+    /// otherwise by photons ([`strays`]).
+    Beams(PhotonMapper),
     /// Progressive photon mapping.
     Photon(PhotonMapper),
     /// The open part of the hemisphere over the first surface.
@@ -146,7 +153,9 @@ impl Integrator {
         };
         match settings.integrator {
             IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path(Scattered::Always)),
-            IntegratorKind::Beams => Self::Beams(path(Scattered::Always)),
+            IntegratorKind::Beams => {
+                Self::Beams(PhotonMapper { path: path(Scattered::Always), settings: settings.photons })
+            }
             IntegratorKind::SingleScattering => Self::Path(path(Scattered::Once)),
             IntegratorKind::Fog => Self::Path(path(Scattered::Ambient)),
             IntegratorKind::Photon => {
@@ -170,8 +179,9 @@ impl Integrator {
             Self::Path(tracer) => {
                 tracer.trace(frame, scratch, eye, wavelengths, stream, PreparedLight::default())
             }
-            Self::Beams(tracer) => tracer.trace(frame, scratch, eye, wavelengths, stream, light),
-            Self::Photon(mapper) => mapper.path.trace(frame, scratch, eye, wavelengths, stream, light),
+            Self::Beams(mapper) | Self::Photon(mapper) => {
+                mapper.path.trace(frame, scratch, eye, wavelengths, stream, light)
+            }
             Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, eye, stream),
         }
     }

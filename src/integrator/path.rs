@@ -14,6 +14,7 @@ use super::dispersion::Carried;
 use super::flight::{Around, Event};
 use super::photon::{self, PhotonPass};
 use super::roulette::at_random;
+use super::strays::StrayPass;
 use super::{EyeSample, FirstHit, PreparedLight, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
@@ -151,6 +152,8 @@ pub(super) struct Sample<'a> {
     pub(super) photons: Option<&'a PhotonPass>,
     /// The triangles that bend light of the sun, where it is looked for through them.
     pub(super) beams: Option<&'a Beams>,
+    /// The photons of what they do not find.
+    pub(super) strays: Option<&'a StrayPass>,
     pub(super) radiance: Lanes,
     pub(super) first: Option<FirstHit>,
 }
@@ -164,7 +167,7 @@ impl PathTracer {
         ray: &Ray,
         wavelengths: &Wavelengths,
         stream: SampleStream,
-        PreparedLight { photons, beams }: PreparedLight,
+        PreparedLight { photons, beams, strays }: PreparedLight,
     ) -> EyeSample {
         scratch.start(frame, wavelengths, self.scattered.ambient(&frame.lights, wavelengths));
         let start = frame.start_of(ray);
@@ -188,6 +191,7 @@ impl PathTracer {
             max_depth,
             photons,
             beams,
+            strays,
             radiance: Lanes::ZERO,
             first: None,
         };

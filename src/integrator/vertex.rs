@@ -154,6 +154,7 @@ impl Sample<'_> {
         self.remember_first(branch, hit, albedo);
         let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
         let guide = self.photons.and_then(|pass| self.take_photons(pass, branch, hit, albedo));
+        self.radiance += branch.throughput * albedo * self.strays_on(hit);
         let pdf_w = |wi: Vec3| match &guide {
             None => lobe.pdf_w(wi),
             Some(guide) => lobe.weighted_pdf_w(wi, |direction| guide.relative(direction)),
@@ -206,10 +207,10 @@ impl Sample<'_> {
         if branch.lookups_left == 0 {
             return None;
         }
-        let mut reflected = photon::reflected(pass, &pass.caustic, hit);
+        let mut reflected = photon::reflected(pass.kernel, &pass.caustic, hit);
         let is_last = branch.lookups_left == 1;
         if is_last {
-            reflected += photon::reflected(pass, &pass.global, hit);
+            reflected += photon::reflected(pass.kernel, &pass.global, hit);
         }
         self.radiance += branch.throughput * albedo * reflected;
         (pass.guide && !is_last && !pass.global.is_empty()).then(|| Guide::new(&pass.global, hit))

@@ -1,5 +1,5 @@
 //! The sun through one refracting interface, found by looking for every way of it, against closed forms, a quadrature and
-//! photons.
+//! photons; and what is bent otherwise, by photons beside it.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 #[path = "../common/mod.rs"]
@@ -11,6 +11,9 @@ use glam::DVec3;
 
 mod agreement;
 mod closed_forms;
+#[path = "../photons/seeds.rs"]
+mod seeds;
+mod strays;
 mod wave;
 
 /// Adds four black walls at a distance from the middle, which keep paths from leaving between the surface and the floor.

@@ -50,7 +50,9 @@ fn parts(picture: &Rendered, [columns, rows]: [u32; 2]) -> Vec<DVec3> {
 /// The scene by photons that are spread over `radius` in every pass.
 pub fn with_radius(scene: Prepared, radius: f32) -> Prepared {
     let mut scene = scene;
-    let Integrator::Photon(mapper) = &mut scene.sampling.integrator else { panic!("no photons") };
+    let (Integrator::Photon(mapper) | Integrator::Beams(mapper)) = &mut scene.sampling.integrator else {
+        panic!("no photons")
+    };
     mapper.settings.radius = Some(radius);
     mapper.settings.volume_radius = Some(radius);
     mapper.settings.shrink = 1.0;

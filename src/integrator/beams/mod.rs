@@ -26,7 +26,8 @@
 //! goes to infinity at a caustic is smoothed as the disc smooths it. Nothing is blurred and nothing is left from pass to pass.
 //!
 //! What is found so has one refracting interface between the vertex and the sun, and otherwise only index-matched boundaries.
-//! Light that is bent twice or reflected on its way is left out, as is that through meshes that overlap others. A path that
+//! Light that is bent twice or reflected on its way, as that through meshes that overlap others, is that of photons
+//! ([`super::strays`]). A path that
 //! sees the disc through interfaces alone has it as before, and one that was lit never sees it: nothing counts twice.
 
 mod gather;

@@ -23,6 +23,7 @@ use crate::geometry::elementary::{exp, ln};
 use crate::geometry::{Bounds, Frame as Basis, Ray};
 use crate::light::LightSample;
 use crate::optics::medium::MediumId;
+use crate::sampling::distribution::Distribution2d;
 use crate::sampling::{SampleStream, warp};
 use crate::scene::frame::{Frame, Place};
 use crate::scene::layers::Insides;
@@ -46,7 +47,7 @@ enum Kind {
 
 /// How a frame's lights emit.
 #[derive(Clone, Debug)]
-pub(super) struct Emission {
+pub(in crate::integrator) struct Emission {
     kinds: Vec<Kind>,
     /// Around everything that does not emit.
     scene: Ball,
@@ -54,6 +55,8 @@ pub(super) struct Emission {
     seen: Ball,
     /// What is before each emitting triangle, by its entry among the lights; `None` where an interface crosses it.
     starts: Vec<Option<Place>>,
+    /// Where on the disc across the light of the sun photons start; evenly unless something is known.
+    worth: Option<Distribution2d>,
 }
 
 /// The start of a photon.
@@ -83,7 +86,15 @@ impl Emission {
         ];
         let scene = scene_ball(frame);
         let starts = starts(frame, 0.0);
-        Self { kinds: kinds.into_iter().flatten().collect(), scene, seen: seen_ball(frame, scene), starts }
+        let kinds = kinds.into_iter().flatten().collect();
+        Self { kinds, scene, seen: seen_ball(frame, scene), starts, worth: None }
+    }
+
+    /// That of the sun alone, whose points on the disc are drawn with a density over the unit square.
+    pub(in crate::integrator) fn of_sun(frame: &Frame, worth: Option<Distribution2d>) -> Self {
+        let scene = scene_ball(frame);
+        let kinds = frame.lights.sun.iter().map(|_| Kind::Sun).collect();
+        Self { kinds, scene, seen: seen_ball(frame, scene), starts: Vec::new(), worth }
     }
 
     /// The same at another time, where something moves; `count` photons will be emitted then.
@@ -97,7 +108,7 @@ impl Emission {
     }
 
     /// Radius of what the eye sees, in metres.
-    pub(super) fn seen_radius(&self) -> f32 {
+    pub(in crate::integrator) fn seen_radius(&self) -> f32 {
         self.seen.radius.min(self.scene.radius)
     }
 
@@ -107,7 +118,7 @@ impl Emission {
     }
 
     /// True when some light emits photons.
-    pub(super) fn is_possible(&self) -> bool {
+    pub(in crate::integrator) fn is_possible(&self) -> bool {
         !self.kinds.is_empty() && self.scene.radius > 0.0
     }
 
@@ -126,8 +137,10 @@ impl Emission {
         let u = stream.next4();
         let mut emitted = match kind {
             Kind::Sun => {
-                let light = frame.lights.sun.as_ref()?.sample([u[0], u[1]], wavelengths);
-                self.start_at_infinity(frame, &light, [u[2], u[3]], (wavelengths, time))
+                let mut light = frame.lights.sun.as_ref()?.sample([u[0], u[1]], wavelengths);
+                let (place, density) = self.place_across([u[2], u[3]]);
+                light.radiance /= density;
+                self.start_at_infinity(frame, &light, place, (wavelengths, time))
             }
             Kind::Sky => {
                 let light = frame.lights.environment.emit([u[0], u[1]], wavelengths)?;
@@ -137,6 +150,11 @@ impl Emission {
         }?;
         emitted.flux /= of_kind;
         (emitted.flux.max_element() > 0.0).then_some(emitted)
+    }
+
+    /// Two numbers for a point on the disc across the light of the sun, and their density over the unit square.
+    pub(in crate::integrator) fn place_across(&self, u: [f32; 2]) -> ([f32; 2], f32) {
+        self.worth.as_ref().map_or((u, 1.0), |worth| worth.sample(u))
     }
 
     fn start_at_infinity(

@@ -138,6 +138,40 @@ impl PhotonMap {
         );
     }
 
+    /// How far a point is from what the nearest photon reaches, at most `most`; 0 within.
+    pub fn clearance(&self, point: Vec3, most: f32) -> f32 {
+        let Some(top) = self.levels.len().checked_sub(1) else { return most };
+        let mut nearest = most.max(0.0);
+        let mut stack = [(0_u8, 0_u32, 0.0_f32); STACK];
+        stack[0] = (top as u8, 0, 0.0);
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let (level, index, squared) = stack[waiting];
+            if squared >= nearest * nearest {
+                continue;
+            }
+            let mut squares = [0.0; WIDTH];
+            self.levels[level as usize][index as usize].squared_distances(point, &mut squares);
+            let first = index as usize * WIDTH;
+            let below = if level == 0 { self.photons.len() } else { self.levels[level as usize - 1].len() };
+            for (child, squared) in (first..below).zip(squares) {
+                if squared >= nearest * nearest {
+                    continue;
+                }
+                if level == 0 {
+                    let photon = &self.photons[child];
+                    let distance = photon.position.distance(point) - self.radius * photon.spread;
+                    nearest = nearest.min(distance.max(0.0));
+                } else {
+                    stack[waiting] = (level - 1, child as u32, squared);
+                    waiting += 1;
+                }
+            }
+        }
+        nearest
+    }
+
     /// Visits the photons of all groups whose measure is below `limit`.
     #[inline(always)]
     fn walk(&self, measure: impl Fn(&Group, &mut [f32; WIDTH]), limit: f32, mut visit: impl FnMut(&Photon)) {

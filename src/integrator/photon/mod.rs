@@ -21,25 +21,28 @@
 //! a small part of the sky has most of its light; `sky = true` or `false` decides otherwise.
 #![doc = include_str!("convergence.md")]
 
-pub(super) mod emission;
+mod emission;
 pub(super) mod gather;
 pub(super) mod guide;
 pub(super) mod kernel;
 pub mod map;
 pub(super) mod peak;
 pub mod radius;
-pub(super) mod trace;
+mod stray;
+mod trace;
 
 pub use map::{Photon, PhotonMap};
 pub use radius::Radii;
 
+pub(super) use emission::Emission;
 pub(super) use gather::reflected;
 pub(super) use guide::Guide;
 pub(super) use peak::is_peak;
+pub(super) use radius::natural;
+pub(super) use stray::Strays;
+pub(super) use trace::{Arrivals, Tracing};
 
-use emission::Emission;
 use peak::has_peak;
-use trace::{Arrivals, Tracing};
 
 use super::Counters;
 use super::path::PathTracer;
@@ -104,6 +107,13 @@ const FIRST_SHARE: f32 = 1.0 / 64.0;
 const KEPT_IN_MEDIA: f32 = 4.0;
 /// Names the numbers of photons apart from those of pixels.
 const PHOTON_COLUMN: u32 = u32::MAX;
+
+/// The wavelengths of all photons and eye paths of a pass, and their time.
+pub(super) fn common_of_pass(frame: &Frame, seed: SampleSeed, pass: u32) -> (Wavelengths, f32) {
+    let mut stream = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass);
+    let [w, t, ..] = stream.next4();
+    (frame.wavelengths(w, &mut stream), frame.views.time(t))
+}
 
 impl PhotonMapper {
     /// Finds out how photons are emitted in a frame and how wide they are spread.
@@ -182,9 +192,7 @@ impl PhotonFrame {
         pass: u32,
     ) -> ((Wavelengths, f32), impl Fn(u32) -> SampleStream + Sync + use<>) {
         let seed = self.seed;
-        let mut common = SampleStream::new(seed, PHOTON_COLUMN, PHOTON_COLUMN, pass);
-        let [w, t, ..] = common.next4();
-        let common = (frame.wavelengths(w, &mut common), frame.views.time(t));
+        let common = common_of_pass(frame, seed, pass);
         let kinds = self.emission.as_ref().map_or(1, Emission::kinds);
         let of_kind = self.count.div_ceil(kinds);
         let stream =
@@ -210,6 +218,7 @@ impl PhotonFrame {
             count,
             max_depth,
             volume_share: self.volume_share,
+            strays: None,
         }
         .run(stream, stops)
     }

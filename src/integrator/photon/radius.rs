@@ -47,7 +47,7 @@ fn shrinkage(pass: u32, alpha: f64) -> f64 {
 /// to 32 times `share` of a plane; `None` with too few photons.
 ///
 /// `share` is the number of photons over that of a whole pass. Where photons are spread unevenly those of spread 1 tell.
-pub(super) fn natural(photons: &[Photon], share: f32) -> Option<f32> {
+pub(in crate::integrator) fn natural(photons: &[Photon], share: f32) -> Option<f32> {
     let even: Vec<Photon> = photons.iter().filter(|p| p.spread < 1.5).copied().collect();
     let map = &PhotonMap::new(&even, 0.0);
     let wanted = NEIGHBOURS as f32 * share;

@@ -3,6 +3,7 @@
 //! A photon carries flux, which boundaries do not scale by the square of the index as they do radiance. It takes one
 //! of its ways at each interface in proportion to their shares, and Russian roulette ends it as it ends eye paths.
 //! What travels straight from a light to a surface is left to next-event estimation; in media every photon counts.
+//! Of those that only stand for what no path finds, fewer are kept ([`super::stray`]).
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,11 +11,12 @@ use rayon::prelude::*;
 use super::emission::{Emission, Emitted};
 use super::map::Photon;
 use super::peak::is_peak;
+use super::stray::Strays;
 use crate::accel::Hit;
 use crate::geometry::Frame as Basis;
 use crate::integrator::diffuse::DiffuseLobe;
 use crate::integrator::flight::{Around, Event};
-use crate::integrator::interface::photon_ways;
+use crate::integrator::interface::{PhotonWay, photon_ways};
 use crate::integrator::layers::Crossing;
 use crate::integrator::path::{Branch, Fate, HARD_LIMIT, LONGEST_WALK, Sample};
 use crate::integrator::{Counters, Scratch};
@@ -31,9 +33,11 @@ const BATCH: u32 = 1024;
 
 /// What a photon has met since its light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum History {
+pub(super) enum History {
     /// Nothing that turned it.
     Straight,
+    /// One refracting interface, through which beams are looked for too.
+    Bent,
     /// Specular surfaces and the peaks of phase functions only.
     Narrowed,
     /// Something else.
@@ -42,34 +46,36 @@ enum History {
 
 /// The photons of one pass.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Arrivals {
+pub(in crate::integrator) struct Arrivals {
     /// On surfaces, turned by specular surfaces and within peaks only.
-    pub(super) caustic: Vec<Photon>,
+    pub(in crate::integrator) caustic: Vec<Photon>,
     /// On surfaces, after scattering.
     pub(super) global: Vec<Photon>,
     /// In media.
-    pub(super) volume: Vec<Photon>,
-    pub(super) counters: Counters,
+    pub(in crate::integrator) volume: Vec<Photon>,
+    pub(in crate::integrator) counters: Counters,
 }
 
 /// What the photons of a pass have in common.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tracing<'a> {
-    pub(super) frame: &'a Frame,
-    pub(super) emission: &'a Emission,
-    pub(super) wavelengths: &'a Wavelengths,
+pub(in crate::integrator) struct Tracing<'a> {
+    pub(in crate::integrator) frame: &'a Frame,
+    pub(in crate::integrator) emission: &'a Emission,
+    pub(in crate::integrator) wavelengths: &'a Wavelengths,
     /// When all of them are on their way, in frames since the shutter opened.
-    pub(super) time: f32,
+    pub(in crate::integrator) time: f32,
     /// Photons emitted.
-    pub(super) count: u32,
-    pub(super) max_depth: u32,
+    pub(in crate::integrator) count: u32,
+    pub(in crate::integrator) max_depth: u32,
     /// The part of the photons in media that are kept, each for so many more.
-    pub(super) volume_share: f32,
+    pub(in crate::integrator) volume_share: f32,
+    /// Which photons are kept, where it is not all.
+    pub(in crate::integrator) strays: Option<Strays<'a>>,
 }
 
 impl Tracing<'_> {
     /// Emits and follows all photons, or fewer when it is told to stop; `stream` gives the numbers of each by its index.
-    pub(super) fn run(
+    pub(in crate::integrator) fn run(
         &self,
         stream: impl Fn(u32) -> SampleStream + Sync,
         stops: &(dyn Fn() -> bool + Sync),
@@ -80,16 +86,9 @@ impl Tracing<'_> {
                 scratch.counters = Counters::default();
                 scratch.start(self.frame, self.wavelengths, Lanes::ZERO);
                 let range = batch * BATCH..((batch + 1) * BATCH).min(self.count);
-                let mut walk =
-                    Walk { sample: self.sample(scratch), arrivals: Arrivals::default(), tracing: *self };
+                let mut walk = self.walk(scratch);
                 for index in range.take_while(|_| !stops()) {
-                    let mut stream = stream(index);
-                    let count = (index, self.count);
-                    if let Some(start) =
-                        self.emission.emit(self.frame, (self.wavelengths, self.time), count, &mut stream)
-                    {
-                        walk.follow(&start, stream);
-                    }
+                    walk.emit(index, stream(index));
                 }
                 let Walk { sample, mut arrivals, .. } = walk;
                 arrivals.counters = sample.scratch.counters;
@@ -107,6 +106,12 @@ impl Tracing<'_> {
         all
     }
 
+    /// Ready to follow photons; the scratch knows the media.
+    pub(in crate::integrator) fn walk<'s>(&'s self, scratch: &'s mut Scratch) -> Walk<'s> {
+        let arrivals = Arrivals::default();
+        Walk { sample: self.sample(scratch), arrivals, tracing: *self, waiting: Vec::new() }
+    }
+
     fn sample<'s>(&'s self, scratch: &'s mut Scratch) -> Sample<'s> {
         Sample {
             frame: self.frame,
@@ -117,27 +122,39 @@ impl Tracing<'_> {
             max_depth: self.max_depth,
             photons: None,
             beams: None,
+            strays: None,
             radiance: Lanes::ZERO,
             first: None,
         }
     }
 }
 
-struct Walk<'a> {
-    sample: Sample<'a>,
-    arrivals: Arrivals,
-    tracing: Tracing<'a>,
+pub(in crate::integrator) struct Walk<'a> {
+    pub(super) sample: Sample<'a>,
+    pub(in crate::integrator) arrivals: Arrivals,
+    pub(super) tracing: Tracing<'a>,
+    /// Photons that have split off and are still to be followed.
+    pub(super) waiting: Vec<Flying>,
 }
 
 /// A photon on its way; the branch's throughput is the flux over `scale`.
-struct Flying {
-    branch: Branch,
-    scale: f32,
-    spread: f32,
-    history: History,
+#[derive(Clone, Copy)]
+pub(super) struct Flying {
+    pub(super) branch: Branch,
+    pub(super) scale: f32,
+    pub(super) spread: f32,
+    pub(super) history: History,
 }
 
 impl Walk<'_> {
+    /// Emits a photon and follows it to its end.
+    pub(in crate::integrator) fn emit(&mut self, index: u32, mut stream: SampleStream) {
+        let Tracing { frame, emission, wavelengths, time, count, .. } = self.tracing;
+        if let Some(start) = emission.emit(frame, (wavelengths, time), (index, count), &mut stream) {
+            self.follow(&start, stream);
+        }
+    }
+
     fn follow(&mut self, start: &Emitted, stream: SampleStream) {
         // Roulette and the choice of lanes look at the throughput: its greatest lane begins at 1.
         let scale = start.flux.max_element();
@@ -153,8 +170,12 @@ impl Walk<'_> {
             spread: start.spread,
             history: History::Straight,
         };
-        self.sample.scratch.around = Around::NOTHING;
-        while self.advance(&mut flying) == Fate::GoesOn {}
+        loop {
+            self.sample.scratch.around = Around::NOTHING;
+            while self.advance(&mut flying) == Fate::GoesOn {}
+            let Some(next) = self.waiting.pop() else { return };
+            flying = next;
+        }
     }
 
     fn advance(&mut self, flying: &mut Flying) -> Fate {
@@ -164,6 +185,9 @@ impl Walk<'_> {
         }
         branch.steps += 1;
         let u = branch.stream.next4();
+        if let Some(strays) = self.tracing.strays {
+            return self.pass_on(&strays, flying, u);
+        }
         let event = if self.tracing.frame.needs.heterogeneous {
             self.sample.fly::<true, true>(branch, u[0])
         } else {
@@ -179,7 +203,7 @@ impl Walk<'_> {
         }
     }
 
-    fn meet(&mut self, flying: &mut Flying, found: &Hit, u: [f32; 4]) -> Fate {
+    pub(super) fn meet(&mut self, flying: &mut Flying, found: &Hit, u: [f32; 4]) -> Fate {
         let frame = self.tracing.frame;
         let hit = frame.geometry.surface_hit(found, flying.branch.direction, self.sample.time);
         match frame.surface(hit.triangle) {
@@ -191,7 +215,7 @@ impl Walk<'_> {
             Surface::Emitter { .. } => Fate::Ends,
             Surface::Layer(_) => self.meet_layer(flying, found, &hit, u),
             Surface::Interface(pair) if pair.matched => self.pass(flying, &hit, pair),
-            Surface::Interface(pair) => self.bend(flying, found, &hit, pair, u),
+            Surface::Interface(pair) => self.bend(flying, (found, &hit), pair, true, u),
             Surface::Diffuse { reflectance } => self.arrive(flying, &hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(flying, found, &hit, [eta, k], u),
         }
@@ -199,6 +223,9 @@ impl Walk<'_> {
 
     /// An index-matched boundary.
     fn pass(&mut self, flying: &mut Flying, hit: &SurfaceHit, pair: &MediumPair) -> Fate {
+        if self.stops_before(pair, hit) {
+            return Fate::Ends;
+        }
         let (incident, beyond) = pair.crossed(hit.from_front);
         // Where indices differ all the same, L / n^2 holds: its adjoint is the inverse of an eye path's factor.
         flying.branch.enter(beyond, self.sample.index_factor(beyond, incident));
@@ -229,20 +256,20 @@ impl Walk<'_> {
         if pair.matched {
             return self.pass(flying, &hit, &pair);
         }
-        let fate = self.bend(flying, &found, &hit, &pair, u);
+        let fate = self.bend(flying, (&found, &hit), &pair, false, u);
         if flying.branch.medium == crossing.media.0 {
             flying.branch.insides = crossing.before;
         }
         fate
     }
 
-    /// A refracting interface: one of the ways, by its share.
+    /// A refracting interface: one of the ways, by its share. `may_be_beam` is false for meshes that overlap.
     fn bend(
         &mut self,
         flying: &mut Flying,
-        found: &Hit,
-        hit: &SurfaceHit,
+        (found, hit): (&Hit, &SurfaceHit),
         pair: &MediumPair,
+        may_be_beam: bool,
         u: [f32; 4],
     ) -> Fate {
         let branch = &mut flying.branch;
@@ -253,7 +280,22 @@ impl Walk<'_> {
         let frame = self.tracing.frame;
         let eta_t_over_i = branch.drawn(self.sample.eta(incident, beyond));
         let ns = frame.geometry.interpolated_normal(found, hit.ng, self.sample.time);
-        let ways = photon_ways(-branch.direction, ns, hit.ng, eta_t_over_i);
+        let mut ways = photon_ways(-branch.direction, ns, hit.ng, eta_t_over_i);
+        if self.stops_before(pair, hit) {
+            ways.iter_mut().filter(|way| way.crosses).for_each(|way| way.share = 0.0);
+        }
+        let is_beam = may_be_beam && frame.lit[incident.0 as usize] && self.has_beams();
+        let taken = |flying: &Flying, way: &PhotonWay, weight: f32| {
+            let mut next = *flying;
+            next.branch.medium = if way.crosses { beyond } else { incident };
+            next.branch.throughput *= weight;
+            next.branch.go_on(hit, way.direction);
+            next.turned_narrowly(way.crosses && is_beam);
+            next
+        };
+        if self.splits(flying) {
+            return self.split(flying, &ways, taken, u[3]);
+        }
         let total: f32 = ways.iter().map(|way| way.share).sum();
         if total <= 0.0 {
             return Fate::Ends;
@@ -268,10 +310,7 @@ impl Walk<'_> {
         let Some(way) = chosen.or_else(|| ways.iter().rev().find(|way| way.share > 0.0)) else {
             return Fate::Ends;
         };
-        branch.medium = if way.crosses { beyond } else { incident };
-        branch.throughput *= total;
-        branch.go_on(hit, way.direction);
-        flying.turned_narrowly();
+        *flying = taken(flying, way, total);
         flying.branch.interacted(u[3])
     }
 
@@ -312,7 +351,7 @@ impl Walk<'_> {
             if takes_first { (first, about_ns, sums[0]) } else { (second, about_ng, sums[1]) };
         branch.throughput *= weight * (total / own);
         branch.leave(hit, direction);
-        flying.turned_narrowly();
+        flying.turned_narrowly(false);
         flying.branch.interacted(u[3])
     }
 
@@ -324,11 +363,16 @@ impl Walk<'_> {
         reflectance: &LaneCurve,
         u: [f32; 4],
     ) -> Fate {
+        let is_kept = self.is_kept(flying);
         let branch = &mut flying.branch;
         let wi = -branch.direction;
         let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
         let cos = wi.dot(hit.ng);
         if cos <= 0.0 {
+            return Fate::Ends;
+        }
+        let albedo = reflectance.lanes(self.tracing.wavelengths);
+        if albedo == Lanes::ZERO {
             return Fate::Ends;
         }
         // What leaves in any direction is the same multiple of what arrives through the surface: the adjoint of the lobe.
@@ -343,14 +387,15 @@ impl Walk<'_> {
             spread: flying.spread,
         };
         match flying.history {
+            _ if !is_kept => {}
             History::Straight => {}
-            History::Narrowed => self.arrivals.caustic.push(photon),
+            History::Bent | History::Narrowed => self.arrivals.caustic.push(photon),
             History::Scattered => self.arrivals.global.push(photon),
         }
-        if self.sample.is_spent(branch) {
+        if self.tracing.strays.is_some() || self.sample.is_spent(branch) {
             return Fate::Ends;
         }
-        branch.throughput *= reflectance.lanes(self.tracing.wavelengths);
+        branch.throughput *= albedo;
         let local = warp::cosine_hemisphere([u[1], u[2]]);
         branch.leave(hit, Basis::around(hit.ng).to_world(local).normalize());
         flying.history = History::Scattered;
@@ -384,7 +429,7 @@ impl Walk<'_> {
         branch.leaves = u32::MAX;
         (branch.bounces, branch.steps) = (0, 0);
         if is_peak(turned.greatest) {
-            flying.turned_narrowly();
+            flying.turned_narrowly(false);
         } else {
             flying.history = History::Scattered;
         }
@@ -393,9 +438,12 @@ impl Walk<'_> {
 }
 
 impl Flying {
-    fn turned_narrowly(&mut self) {
-        if self.history == History::Straight {
-            self.history = History::Narrowed;
-        }
+    /// `is_beam` where beams are looked for through what has turned it.
+    fn turned_narrowly(&mut self, is_beam: bool) {
+        self.history = match self.history {
+            History::Straight if is_beam => History::Bent,
+            History::Straight | History::Bent => History::Narrowed,
+            History::Narrowed | History::Scattered => self.history,
+        };
     }
 }

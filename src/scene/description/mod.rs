@@ -357,7 +357,7 @@ pub struct RenderDescription {
     pub seed_mode: Option<SeedMode>,
     /// Pixel filter (box).
     pub filter: FilterKind,
-    /// Photons of the photon integrator.
+    /// Photons of the photon integrator, and those beside beams.
     pub photons: PhotonDescription,
 }
 
@@ -405,7 +405,7 @@ pub enum IntegratorKind {
     Path,
     /// Progressive photon mapping.
     Photon,
-    /// Path tracing that finds the sun through one refracting interface.
+    /// Path tracing that finds the sun through one refracting interface, with photons for the rest of it.
     Beams,
     /// Paths that turn at one particle at most.
     SingleScattering,

@@ -1,0 +1,70 @@
+//! Photons that tell where others are worth emitting, and how wide these are spread.
+
+use rayon::prelude::*;
+
+use super::StrayFrame;
+use crate::integrator::photon::{Emission, Photon, Radii, common_of_pass, natural};
+use crate::integrator::{Counters, Scratch};
+use crate::sampling::distribution::Distribution2d;
+use crate::scene::frame::Frame;
+use crate::spectrum::Lanes;
+
+/// Cells along each edge of the unit square.
+const CELLS: usize = 64;
+/// Photons that tell what the cells bring: sixteen in each.
+const PILOT: u32 = 65_536;
+/// Photons that tell the radii, at most.
+const OF_RADII: u32 = 65_536;
+/// The part of the photons that is drawn evenly.
+const EVEN: f64 = 0.2;
+
+impl StrayFrame<'_> {
+    /// The same with photons where they are worth it, and radii; `None` where none bring anything.
+    pub(super) fn guided(mut self, frame: &Frame) -> Option<Self> {
+        let worth = self.worth_of_cells(frame)?;
+        self.emission = Emission::of_sun(frame, Some(worth));
+        let count = self.count.min(OF_RADII);
+        let pilot = self.trace(frame, 0, count, &|| false);
+        // Photons of one pilot stand for so many photons of a pass.
+        let share = count as f32 / self.count as f32;
+        let settings = &self.mapper.settings;
+        let widest = 0.1 * self.emission.seen_radius();
+        let radius = |given: Option<f32>, photons: &[Photon]| {
+            given.unwrap_or_else(|| natural(photons, share).unwrap_or(widest).min(widest))
+        };
+        let caustic = radius(settings.radius, &pilot.caustic);
+        let volume = radius(settings.volume_radius, &pilot.volume);
+        self.radii = Radii { caustic, global: caustic, volume };
+        Some(self)
+    }
+
+    fn worth_of_cells(&self, frame: &Frame) -> Option<Distribution2d> {
+        let (wavelengths, time) = common_of_pass(frame, self.seed, 0);
+        let tracing = self.tracing(frame, (&wavelengths, time), PILOT);
+        let stream = self.stream(0);
+        let left_by: Vec<(usize, f64)> = (0..PILOT)
+            .into_par_iter()
+            .map_init(Scratch::default, |scratch, index| {
+                scratch.counters = Counters::default();
+                scratch.start(frame, &wavelengths, Lanes::ZERO);
+                let [.., x, y] = stream(index).next4();
+                let [x, y] = [x, y].map(|u| (u * CELLS as f32) as usize);
+                let mut walk = tracing.walk(scratch);
+                walk.emit(index, stream(index));
+                let left = walk.arrivals.caustic.iter().chain(&walk.arrivals.volume);
+                (y * CELLS + x, left.map(|photon| f64::from(photon.flux.element_sum())).sum())
+            })
+            .collect();
+        let mut cells = vec![0.0; CELLS * CELLS];
+        for (cell, flux) in left_by {
+            cells[cell] += flux * flux;
+        }
+        cells.iter_mut().for_each(|square| *square = square.sqrt());
+        let mean = cells.iter().sum::<f64>() / cells.len() as f64;
+        if mean <= 0.0 {
+            return None;
+        }
+        let worth = cells.iter().map(|w| EVEN * mean + (1.0 - EVEN) * w).collect::<Vec<_>>();
+        Distribution2d::new(CELLS, &worth)
+    }
+}
