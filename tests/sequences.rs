@@ -7,7 +7,7 @@ mod common;
 
 use std::path::Path;
 
-use common::render::{prepare, prepare_task};
+use common::render::{prepare, prepare_preview, prepare_task};
 use floe::light::Picture;
 use glam::Vec3;
 
@@ -77,6 +77,18 @@ fn the_seas_and_the_green_waterline_are_closed() {
     for (scene, frame, media) in [("seas", 0, 7), ("seas", 5, 7), ("waterline", 0, 4)] {
         let scene = prepare_task(Path::new(&format!("sequences/{scene}/scene.toml")), frame);
         assert_eq!((scene.render(1, 0).counters.cut, scene.frame.media.len()), (0, media));
+    }
+}
+
+/// Labels agree, no path has to be cut, and the sun is found through the surface: with a drop in the air, among rings, from under
+/// water.
+#[test]
+fn the_sun_gets_into_the_pool_of_the_drops_and_under_the_ice() {
+    for (scene, frame, media) in [("drop", 0, 2), ("drop", 7, 2), ("under_ice", 18, 3)] {
+        let scene = prepare_preview(Path::new(&format!("sequences/{scene}/scene.toml")), frame);
+        let counters = scene.render(1, 0).counters;
+        assert_eq!((counters.cut, counters.depth_limited, scene.frame.media.len()), (0, 0, media));
+        assert!(counters.beam_roots > 0, "{counters:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use floe::driver::job::Job;
+use floe::driver::preview;
 use floe::driver::tiles::{Sampling, render_pixels};
 use floe::film::FrameImage;
 use floe::integrator::Counters;
@@ -32,7 +33,18 @@ pub fn prepare(file: &Path) -> Prepared {
 /// # Panics
 /// As [`prepare`], and when there are not so many.
 pub fn prepare_task(file: &Path, index: usize) -> Prepared {
-    let job = Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    frame_of(&Job::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display())), index)
+}
+
+/// As [`prepare_task`], at a quarter of the width and height.
+///
+/// # Panics
+/// As [`prepare_task`].
+pub fn prepare_preview(file: &Path, index: usize) -> Prepared {
+    frame_of(&preview::open(file).unwrap_or_else(|e| panic!("{}: {e}", file.display())), index)
+}
+
+fn frame_of(job: &Job, index: usize) -> Prepared {
     let task = job.tasks().swap_remove(index);
     let meshes = task.read(&job.world).unwrap_or_else(|e| panic!("{e}")).meshes;
     let assembled = job.world.assemble(task.number, meshes, None).unwrap_or_else(|e| panic!("{e}"));
