@@ -239,6 +239,7 @@ fn describe_density(described: &DensityDescription, density: &Density) -> Option
 
 fn describe_frame(number: &str, assembled: &Assembled, integrator: &Integrator) -> String {
     let frame = &assembled.frame;
+    let integrator = integrator.on(&frame.needs);
     let mut text = format!("frame {number}\n");
     let _ = writeln!(text, "  triangles {}", frame.geometry.triangles.len());
     for (interface, count) in &assembled.interfaces {

@@ -186,7 +186,9 @@ impl<'a> Session<'a> {
         record: &mut FrameRecord,
     ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
-        let left_out = self.sampling.integrator.left_out(&assembled.frame.needs);
+        let needs = &assembled.frame.needs;
+        self.sampling.integrator = Integrator::new(&self.settings).on(needs);
+        let left_out = self.sampling.integrator.left_out(needs);
         record.left_out.extend(left_out.into_iter().map(Into::into));
         for warning in &record.warnings {
             self.observer.warning(warning);
@@ -252,7 +254,7 @@ impl<'a> Session<'a> {
     fn doubt(&self, record: &FrameRecord, estimate: Option<ErrorEstimate>) -> Option<String> {
         let doubt = estimate?.warning()?;
         let cure = match self.sampling.integrator {
-            Integrator::Photon(_) => "more samples tell",
+            Integrator::Photon(_) | Integrator::Beams(_) => "more samples tell",
             _ => "more samples tell, and integrator = \"photon\" finds what chance does not",
         };
         Some(format!("frame {}: {doubt}; {cure}", record.frame))

@@ -90,6 +90,7 @@ pub fn accumulate(
     sampling: &Sampling,
     control: &dyn Control,
 ) -> Option<StoppedBy> {
+    let sampling = &Sampling { integrator: sampling.integrator.on(&frame.needs), ..sampling.clone() };
     let beams = match &sampling.integrator {
         Integrator::Beams(_) => Beams::new(frame),
         _ => None,

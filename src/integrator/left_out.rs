@@ -17,6 +17,7 @@ impl Integrator {
     /// What a picture of a frame with these needs lacks.
     pub fn left_out(&self, needs: &Needs) -> Vec<&'static str> {
         let of_scattering = match self {
+            Self::Auto(_) => return self.on(needs).left_out(needs),
             Self::Path(tracer) => match tracer.scattered {
                 Scattered::Always => None,
                 Scattered::Once => Some("light scattered more than once"),
@@ -45,6 +46,9 @@ impl Integrator {
 
     /// A line for each part of the renderer: what runs or is left out, and why.
     pub fn lines(&self, needs: &Needs) -> Vec<NeedLine> {
+        if let Self::Auto(_) = self {
+            return self.on(needs).lines(needs);
+        }
         let met = self.meets(needs).lines();
         let lines = needs.lines().into_iter().zip(met);
         lines
@@ -117,7 +121,7 @@ impl Integrator {
             Self::Path(tracer) if tracer.scattered == Scattered::Ambient => {
                 Needs { scattering: false, direct_light: needs.direct_light && needs.diffuse, ..*needs }
             }
-            Self::Path(_) | Self::Beams(_) | Self::Photon(_) => *needs,
+            Self::Auto(_) | Self::Path(_) | Self::Beams(_) | Self::Photon(_) => *needs,
             Self::AmbientOcclusion(_) => Needs { motion: needs.motion, lens: needs.lens, ..Needs::default() },
         }
     }

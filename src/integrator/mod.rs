@@ -47,6 +47,7 @@ use crate::optics::medium::MediumLanes;
 use crate::sampling::SampleStream;
 use crate::scene::description::{IntegratorKind, RenderDescription};
 use crate::scene::frame::Frame;
+use crate::scene::needs::Needs;
 use crate::spectrum::{LaneMode, Lanes, Wavelengths};
 
 /// What one sample of a pixel brings back.
@@ -131,6 +132,8 @@ pub struct PreparedLight<'a> {
 /// A way to compute the radiance of a sample.
 #[derive(Clone, Copy, Debug)]
 pub enum Integrator {
+    /// Beams in frames where the sun is behind a refracting interface, paths in others ([`Self::on`]).
+    Auto(PhotonMapper),
     /// Volumetric path tracing.
     Path(PathTracer),
     /// Volumetric path tracing that finds the sun through one refracting interface ([`beams`]), and what of it is bent
@@ -151,17 +154,25 @@ impl Integrator {
             forced: settings.forced_scattering,
             scattered,
         };
+        let with_photons = || PhotonMapper { path: path(Scattered::Always), settings: settings.photons };
         match settings.integrator {
-            IntegratorKind::Auto | IntegratorKind::Path => Self::Path(path(Scattered::Always)),
-            IntegratorKind::Beams => {
-                Self::Beams(PhotonMapper { path: path(Scattered::Always), settings: settings.photons })
-            }
+            IntegratorKind::Path => Self::Path(path(Scattered::Always)),
+            IntegratorKind::Auto => Self::Auto(with_photons()),
+            IntegratorKind::Beams => Self::Beams(with_photons()),
             IntegratorKind::SingleScattering => Self::Path(path(Scattered::Once)),
             IntegratorKind::Fog => Self::Path(path(Scattered::Ambient)),
-            IntegratorKind::Photon => {
-                Self::Photon(PhotonMapper { path: path(Scattered::Always), settings: settings.photons })
-            }
+            IntegratorKind::Photon => Self::Photon(with_photons()),
             IntegratorKind::AmbientOcclusion => Self::AmbientOcclusion(AmbientOcclusion),
+        }
+    }
+
+    /// What runs in a frame with these needs.
+    #[must_use]
+    pub fn on(self, needs: &Needs) -> Self {
+        match self {
+            Self::Auto(mapper) if needs.sun_behind_interface => Self::Beams(mapper),
+            Self::Auto(mapper) => Self::Path(mapper.path),
+            other => other,
         }
     }
 
@@ -179,7 +190,7 @@ impl Integrator {
             Self::Path(tracer) => {
                 tracer.trace(frame, scratch, eye, wavelengths, stream, PreparedLight::default())
             }
-            Self::Beams(mapper) | Self::Photon(mapper) => {
+            Self::Auto(mapper) | Self::Beams(mapper) | Self::Photon(mapper) => {
                 mapper.path.trace(frame, scratch, eye, wavelengths, stream, light)
             }
             Self::AmbientOcclusion(tracer) => tracer.trace(frame, scratch, eye, stream),
@@ -194,6 +205,7 @@ impl Integrator {
                 Scattered::Once => "single-scattering",
                 Scattered::Ambient => "fog",
             },
+            Self::Auto(_) => "auto",
             Self::Beams(_) => "beams",
             Self::Photon(_) => "photon",
             Self::AmbientOcclusion(_) => "ambient-occlusion",

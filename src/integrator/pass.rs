@@ -41,7 +41,7 @@ impl Integrator {
             Self::Beams(mapper) => {
                 mapper.strays(frame, beams, seed).map(|strays| Emitters::Strays(Box::new(strays)))
             }
-            Self::Path(_) | Self::AmbientOcclusion(_) => None,
+            Self::Auto(_) | Self::Path(_) | Self::AmbientOcclusion(_) => None,
         }
     }
 }

@@ -62,19 +62,22 @@ impl<'a> Frames<'a> {
     }
 
     /// What the reference is rendered by, and another way that leaves nothing out either, where there is one: paths, which
-    /// have no bias, unless they leave something out, and photons, finer than the scene's.
+    /// have no bias, or beams where paths leave something out, and photons, finer than the scene's.
     pub fn estimators(&self, samples: u32, seed: u64) -> (RenderDescription, Option<RenderDescription>) {
         let needs = &self.base().needs;
         let [width, height] = self.base().views.opening.resolution();
         let photons = self.settings().photons.finer(width.saturating_mul(height));
         let exact = RenderDescription { samples, seed, similarity: 0, photons, ..self.settings().clone() };
         let by = |integrator| RenderDescription { integrator, ..exact.clone() };
-        let (path, photon) = (by(IntegratorKind::Path), by(IntegratorKind::Photon));
+        let [path, beams, photon] =
+            [IntegratorKind::Path, IntegratorKind::Beams, IntegratorKind::Photon].map(by);
+        let is_whole = |render: &RenderDescription| Integrator::new(render).left_out(needs).is_empty();
         let photons_differ = !needs.turbid_air && (needs.diffuse || needs.scattering);
-        match (Integrator::new(&path).left_out(needs).is_empty(), photons_differ) {
-            (true, true) => (path, Some(photon)),
-            (true, false) => (path, None),
-            (false, _) => (photon, None),
+        let best = [path, beams].into_iter().find(is_whole);
+        match (best, photons_differ) {
+            (Some(best), true) => (best, Some(photon)),
+            (Some(best), false) => (best, None),
+            (None, _) => (photon, None),
         }
     }
 

@@ -15,8 +15,8 @@ pub(super) struct Variant {
     pub render: RenderDescription,
 }
 
-/// Every integrator with all settings. Without integrators it is that of the scene, and where that is `auto` photons
-/// besides if the sun shines where paths do not find it.
+/// Every integrator with all settings. Without integrators it is that of the scene, and where that is `auto` what it runs, with
+/// photons alone besides if the sun shines where paths do not find it.
 pub(super) fn variants(
     scene: &RenderDescription,
     needs: &Needs,
@@ -25,7 +25,7 @@ pub(super) fn variants(
 ) -> Result<Vec<Variant>, StudyError> {
     let is_auto = scene.integrator == IntegratorKind::Auto;
     let default: &[&str] = match (is_auto, needs.sun_behind_interface) {
-        (true, true) => &["path", "photon"],
+        (true, true) => &["beams", "photon"],
         (true, false) => &["path"],
         (false, _) => &[],
     };
@@ -122,7 +122,7 @@ mod tests {
         let dry = Needs::default();
         let under_water = Needs { sun_behind_interface: true, ..dry };
         assert_eq!(names(&dry, &[], &[]), ["path"]);
-        assert_eq!(names(&under_water, &[], &[]), ["path", "photon"]);
+        assert_eq!(names(&under_water, &[], &[]), ["beams", "photon"]);
         assert_eq!(names(&under_water, &["path", "path"], &[]), ["path"]);
         assert_eq!(
             names(&dry, &["path", "fog"], &["", "split = 2"]),
