@@ -105,16 +105,23 @@ fn photons_change_no_byte_either() {
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
-/// The sun through moving water, looked for from every particle.
+/// The sun through moving water, looked for from every particle, and by photons through what is bent twice.
 #[test]
 fn beams_change_no_byte_either() {
     let text = shipped_scene(4).replace("[render]\n", "[render]\nintegrator = \"beams\"\n");
     let sun = "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n";
     let folder = wobbling_in(&format!("{text}{sun}"));
+    let report = folder.render(RenderOptions::default());
+    assert!(report.frames[0].counters.photons > 0, "nothing is bent twice");
+    std::fs::remove_dir_all(folder.path("out")).unwrap();
     let (sequence, refitted) = pictures(&folder, "0-2", 2);
     assert_eq!((sequence.len(), refitted), (6, vec![false, true, true]));
     assert_eq!(pictures(&folder, "0-2", 1).0, sequence, "one thread");
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
+    for number in ["2", "1"] {
+        let (alone, _) = pictures(&folder, number, 2);
+        assert!(alone.iter().all(|(name, bytes)| sequence[name] == *bytes), "frame {number} alone");
+    }
 }
 
 /// Halves decide by sums in a fixed order; photon passes are looked at in between.

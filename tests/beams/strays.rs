@@ -146,7 +146,7 @@ fn a_wide_sun_as_chance_finds_it() {
         3.0 / (PI * sine * sine)
     );
     let beams = "integrator = \"beams\"\nphotons = { count = 20000 }\n";
-    let by_beams = at_no_radius(&folder, &format!("{text}{sun}"), beams, 0.02, 24);
-    let by_chance = Seeds::render(&scene(&folder, &format!("{text}{lamp}"), ""), 512, 4, GRID).means();
+    let by_beams = at_no_radius(&folder, &format!("{text}{sun}"), beams, 0.02, 48);
+    let by_chance = Seeds::render(&scene(&folder, &format!("{text}{lamp}"), ""), 2048, 4, GRID).means();
     assert_agree("wide sun", &by_beams, &by_chance, 0.05);
 }

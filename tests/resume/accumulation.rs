@@ -120,6 +120,11 @@ fn photon_mapping_may_stop_between_any_two_samples() {
     check("photon", "samples = 4", 1, 4);
 }
 
+#[test]
+fn beams_with_photons_beside_them_may_stop_between_any_two_samples() {
+    check("beams", "samples = 4", 1, 7);
+}
+
 /// Each pixel has a rest after every rung: 16, 24, 32, 48, 64 samples.
 #[test]
 fn halves_may_stop_between_any_two_samples() {

@@ -379,6 +379,22 @@ mod tests {
     }
 
     #[test]
+    fn the_way_to_the_nearest_reach_is_that_of_a_search_through_all() {
+        for count in [0, 1, 8, 9, 65, 3000] {
+            let photons = photons(count);
+            for (own, most) in [(0.0, 1.0), (0.02, 0.3), (0.02, 0.01), (0.3, 2.0)] {
+                let map = PhotonMap::new(&photons, own);
+                for i in 0..50 {
+                    let centre = number(90_000 + i) * 1.6 - 0.3;
+                    let reach = |p: &Photon| (p.position.distance(centre) - own * p.spread).max(0.0);
+                    let expected = photons.iter().map(reach).fold(most, f32::min);
+                    assert_eq!(map.clearance(centre, most), expected, "{count} {own} {most}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn photons_in_one_place_are_all_found() {
         let here = Photon { position: Vec3::ONE, ..photons(1)[0] };
         let map = PhotonMap::new(&[here; 1000], 1e-6);

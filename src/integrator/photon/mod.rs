@@ -38,7 +38,7 @@ pub(super) use emission::Emission;
 pub(super) use gather::reflected;
 pub(super) use guide::Guide;
 pub(super) use peak::is_peak;
-pub(super) use radius::natural;
+pub(super) use radius::holding;
 pub(super) use stray::Strays;
 pub(super) use trace::{Arrivals, Tracing};
 

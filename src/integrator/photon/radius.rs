@@ -11,7 +11,7 @@
 use super::map::{Photon, PhotonMap};
 
 /// Photons that the first radius takes in on surfaces.
-const NEIGHBOURS: usize = 32;
+const NEIGHBOURS: f32 = 32.0;
 /// Photons whose neighbours are looked at.
 const PROBES: usize = 65;
 
@@ -43,14 +43,18 @@ fn shrinkage(pass: u32, alpha: f64) -> f64 {
     libm::exp(0.5 * log)
 }
 
-/// The median distance of photons to their k-th nearest neighbours, where k is 32 times `share` (at least 4), scaled
-/// to 32 times `share` of a plane; `None` with too few photons.
+/// The median distance of photons to their k-th nearest neighbours, where k is 32 times `share`, as for [`holding`].
 ///
-/// `share` is the number of photons over that of a whole pass. Where photons are spread unevenly those of spread 1 tell.
-pub(in crate::integrator) fn natural(photons: &[Photon], share: f32) -> Option<f32> {
+/// `share` is the number of photons over that of a whole pass.
+pub(super) fn natural(photons: &[Photon], share: f32) -> Option<f32> {
+    holding(photons, NEIGHBOURS * share)
+}
+
+/// The median distance of photons to their k-th nearest neighbours, where k is what is wanted (at least 4), scaled
+/// to as many of a plane; `None` with too few photons. Where photons are spread unevenly those of spread 1 tell.
+pub(in crate::integrator) fn holding(photons: &[Photon], wanted: f32) -> Option<f32> {
     let even: Vec<Photon> = photons.iter().filter(|p| p.spread < 1.5).copied().collect();
     let map = &PhotonMap::new(&even, 0.0);
-    let wanted = NEIGHBOURS as f32 * share;
     let k = (wanted.round() as usize).max(4);
     if map.len() <= 2 * k {
         return None;

@@ -68,7 +68,7 @@ impl PhotonMapper {
         let emission = Some(Emission::of_sun(frame, None));
         let emission = emission.filter(|e| Self::may_stray(&frame.needs) && e.is_possible())?;
         let strays = Strays { beams };
-        let count = self.settings.count_of(width.saturating_mul(height));
+        let count = self.settings.count_of_strays(width.saturating_mul(height));
         let radii = Radii { caustic: 0.0, global: 0.0, volume: 0.0 };
         StrayFrame { mapper: *self, seed, strays, emission, count, radii }.guided(frame)
     }

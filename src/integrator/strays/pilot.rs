@@ -3,20 +3,23 @@
 use rayon::prelude::*;
 
 use super::StrayFrame;
-use crate::integrator::photon::{Emission, Photon, Radii, common_of_pass, natural};
+use crate::integrator::photon::{Emission, Photon, Radii, common_of_pass, holding};
 use crate::integrator::{Counters, Scratch};
 use crate::sampling::distribution::Distribution2d;
 use crate::scene::frame::Frame;
 use crate::spectrum::Lanes;
 
 /// Cells along each edge of the unit square.
-const CELLS: usize = 64;
+const CELLS: usize = 32;
 /// Photons that tell what the cells bring: sixteen in each.
-const PILOT: u32 = 65_536;
-/// Photons that tell the radii, at most.
-const OF_RADII: u32 = 65_536;
+const PILOT: u32 = 16_384;
 /// The part of the photons that is drawn evenly.
 const EVEN: f64 = 0.2;
+/// Photons that the first radius takes in on surfaces and in media: few, since the noise that they leave is little beside that
+/// of the paths that ask, and each that is asked costs time.
+const NEIGHBOURS: [f32; 2] = [4.0, 2.0];
+/// Photons that tell the radii, at most.
+const OF_RADII: u32 = 65_536;
 
 impl StrayFrame<'_> {
     /// The same with photons where they are worth it, and radii; `None` where none bring anything.
@@ -29,11 +32,11 @@ impl StrayFrame<'_> {
         let share = count as f32 / self.count as f32;
         let settings = &self.mapper.settings;
         let widest = 0.1 * self.emission.seen_radius();
-        let radius = |given: Option<f32>, photons: &[Photon]| {
-            given.unwrap_or_else(|| natural(photons, share).unwrap_or(widest).min(widest))
+        let radius = |given: Option<f32>, photons: &[Photon], neighbours: f32| {
+            given.unwrap_or_else(|| holding(photons, neighbours * share).unwrap_or(widest).min(widest))
         };
-        let caustic = radius(settings.radius, &pilot.caustic);
-        let volume = radius(settings.volume_radius, &pilot.volume);
+        let caustic = radius(settings.radius, &pilot.caustic, NEIGHBOURS[0]);
+        let volume = radius(settings.volume_radius, &pilot.volume, NEIGHBOURS[1]);
         self.radii = Radii { caustic, global: caustic, volume };
         Some(self)
     }
