@@ -30,13 +30,14 @@ def prepare(scene, arguments):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     Blender(bpy, scene, arguments).build()
     settings = bpy.context.scene
-    picture = Path(tempfile.mkdtemp(prefix="cycles_hero_")) / "picture.exr"
-    settings.render.filepath = str(picture)
+    temporary = tempfile.TemporaryDirectory(prefix="cycles_hero_")
+    settings.render.filepath = str(Path(temporary.name) / "picture.exr")
 
     def render(samples, seed):
         settings.cycles.samples, settings.cycles.seed = samples, seed
         bpy.ops.render.render(write_still=True)
-        return read_exr(picture)
+        # Named by its owner here, so that the folder lives as long as this function.
+        return read_exr(Path(temporary.name) / "picture.exr")
 
     return bpy.app.version_string, render
 

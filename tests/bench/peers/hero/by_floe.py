@@ -17,14 +17,16 @@ def prepare(scene, arguments):
     """Version and renderer."""
     if not FLOE.exists():
         raise SystemExit(f"{FLOE} is not there: cargo build --release")
-    folder = Path(tempfile.mkdtemp(prefix="floe_hero_"))
+    temporary = tempfile.TemporaryDirectory(prefix="floe_hero_")
+    folder = Path(temporary.name)
     for mesh in FOLDER.glob("*.ply"):
         (folder / mesh.name).symlink_to(mesh)
     (folder / "scene.toml").write_text(described(arguments))
     version = subprocess.run([FLOE, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
 
     def render(samples, seed):
-        picture = folder / "picture.exr"
+        # Named by its owner here, so that the folder lives as long as this function.
+        picture = Path(temporary.name) / "picture.exr"
         command = [FLOE, "render", folder / "scene.toml", "--quiet", "--output", picture]
         command += ["--samples", str(samples), "--seed", str(seed), "--threads", str(arguments.threads)]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
