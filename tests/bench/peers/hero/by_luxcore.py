@@ -12,8 +12,8 @@ Its engines take one number for where a ray scatters and which way it goes at th
 `homogeneous` both then depend on each other, and a white body of ice in white light is 20 % too dark. One that is
 `heterogeneous`, in a single step, is the same medium with numbers of its own, and right.
 
-Vertex merging loses light, most of it in the ice: with a sun of 10 degrees a tenth of the picture's mean at the radius
-that LuxCore chooses, 1 % at a sixth of it.
+Vertex merging loses light: with a sun of 10 degrees a tenth of the picture's mean at the radius that LuxCore chooses, 1 %
+at a sixth of it. Under the scene's own sun a third and more of the ice's is missing.
 
 The sun is its `sun`, whose disc is met by paths through water (those of `distant` never are); its colour is that of a
 sun in air, so its radiance is measured in one pixel first, and set.
