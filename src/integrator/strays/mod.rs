@@ -13,6 +13,11 @@
 //! over the unit square that the disc is drawn from, whose exact value divides their flux. Where the pilot leaves nothing
 //! behind there are no passes.
 //!
+//! In the scene of `tests/bench/hero`, an iceberg in turbid water under waves, of 320 x 180 pixels, they bring 2.7, 4.1 and 2.8 % of
+//! the light in red, green and blue. Of one photon for eight pixels the pilot makes twenty times as many arrive, and with the
+//! same radii a quarter of the noise that they add; with those found by default a sample takes 1.4 times what it takes without,
+//! and the variance is the same but for a few parts in a hundred.
+//!
 //! Half spaces are lit straight and by beams alone, and the air must be clear: photons would have to begin at infinity.
 
 mod ask;
