@@ -33,6 +33,8 @@ pub(super) struct Receiver {
     pub(super) interactions: u32,
     /// The lanes of the path.
     pub(super) carried: Carried,
+    /// How much of its light counts, in the sense of [`super::path::Branch::weight`].
+    pub(super) weight: f32,
 }
 
 impl Sample<'_> {
@@ -51,7 +53,7 @@ impl Sample<'_> {
             None => Lanes::ZERO,
             Some(beams) => {
                 let v = stream.next4();
-                self.sun_through(beams, receiver, &response, [v[0], v[1]])
+                self.sun_through(beams, receiver, &response, v)
             }
         };
         if let Some(beneath) = self.looks_beneath(receiver.medium, receiver.interactions) {

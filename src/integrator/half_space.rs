@@ -116,6 +116,7 @@ impl Sample<'_> {
                     leaves: hit.triangle,
                     interactions: branch.interactions,
                     carried: branch.carried,
+                    weight: branch.weight(),
                 };
                 let response = |wi: Vec3| cover.response(&reflection, throughput, wi);
                 let direct = self.direct(&receiver, true, response, &mut branch.stream);

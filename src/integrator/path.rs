@@ -318,6 +318,7 @@ impl Sample<'_> {
                 leaves: u32::MAX,
                 interactions: branch.interactions,
                 carried: branch.carried,
+                weight: branch.weight(),
             };
             let response = |wi: Vec3| {
                 let (value, phase_w) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
@@ -427,6 +428,12 @@ impl Branch {
             arrival: Arrival { specular_from_eye: true, looked: Looked::Not },
             stream,
         }
+    }
+
+    /// How much of the light that arrives counts, without the factors of the boundaries; 1 at the eye.
+    #[inline]
+    pub(super) fn weight(&self) -> f32 {
+        self.throughput.max_element() / self.index_factor
     }
 
     /// Counts an interaction with a surface and plays Russian roulette with `u`.

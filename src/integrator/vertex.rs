@@ -172,6 +172,7 @@ impl Sample<'_> {
                 leaves: hit.triangle,
                 interactions: branch.interactions,
                 carried: branch.carried,
+                weight: branch.weight(),
             };
             let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);

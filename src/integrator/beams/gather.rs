@@ -10,7 +10,8 @@ use super::index::Reach;
 use super::patch::SunFrame;
 use super::piece::Piece;
 use super::shade::Shade;
-use super::spread::{Fan, Slopes, angle};
+use super::sieve::Sieve;
+use super::spread::{Fan, Slopes, angle, slope_about};
 use crate::geometry::triangle::scaled_normal;
 use crate::scene::frame::Frame;
 use crate::scene::surface::{MediumPair, Surface};
@@ -34,6 +35,8 @@ pub(super) struct Gatherer<'a> {
     pub(super) indices: Vec<[f64; 2]>,
     /// How far behind triangles light is looked for, about.
     pub(super) depth: f32,
+    /// The mean slope of all rays, about.
+    pub(super) shear: DVec2,
 }
 
 /// A triangle at the first and the last moment, in the frame of the sun; once where these are the same.
@@ -45,6 +48,9 @@ struct Turning {
     own: Fan,
     eta: [f64; 2],
 }
+
+/// A beam, its bounds, and a first look at it.
+type Gathered = (Beam, (Reach, Sieve));
 
 impl Turning {
     /// The corner opposite to the edge of a piece along which normals turn most.
@@ -60,7 +66,7 @@ impl Turning {
 
 impl Gatherer<'_> {
     /// The beams of both sides of a triangle.
-    pub(super) fn beams(&self, triangle: u32) -> Vec<(Beam, Reach)> {
+    pub(super) fn beams(&self, triangle: u32) -> Vec<Gathered> {
         let mut found = Vec::new();
         let frame = self.frame;
         let Surface::Interface(pair) = frame.surface(triangle) else { return found };
@@ -79,6 +85,27 @@ impl Gatherer<'_> {
         found
     }
 
+    /// The slope of rays that are bent about the triangles' own normals, in the mean over the light that they take.
+    pub(super) fn mean_slope(&self) -> DVec2 {
+        let (mut sum, mut light) = (DVec2::ZERO, 0.0);
+        for triangle in 0..self.frame.geometry.triangles.len() as u32 {
+            let Surface::Interface(pair) = self.frame.surface(triangle) else { continue };
+            let area = self.sun.local(scaled_normal(&self.frame.geometry.vertices(triangle)));
+            let front = area.z < 0.0;
+            if pair.matched || area.z == 0.0 || !self.frame.lit[pair.crossed(front).0.0 as usize] {
+                continue;
+            }
+            let normal = if front { area } else { -area }.normalize();
+            let [least, most] = self.eta(pair, front);
+            let slope = slope_about(normal, 0.5 * (least + most));
+            if slope.is_finite() {
+                sum += slope * area.z.abs();
+                light += area.z.abs();
+            }
+        }
+        if light > 0.0 { sum / light } else { DVec2::ZERO }
+    }
+
     /// The triangle as the sun sees it; none where it shines on its other side only.
     fn turning(&self, triangle: u32, pair: &MediumPair, front: bool) -> Option<Turning> {
         let side = if front { 1.0 } else { -1.0 };
@@ -94,7 +121,7 @@ impl Gatherer<'_> {
     }
 
     /// Those of a piece, in halves where its rays are within wide bounds.
-    fn pieces(&self, turning: &Turning, beam: Beam, found: &mut Vec<(Beam, Reach)>) {
+    fn pieces(&self, turning: &Turning, beam: Beam, found: &mut Vec<Gathered>) {
         let Some((beam, reach)) = self.piece(turning, beam) else { return };
         if self.shade.covers(beam.triangle, &beam.piece) {
             return;
@@ -107,7 +134,7 @@ impl Gatherer<'_> {
             }
             return;
         }
-        found.push((beam, reach));
+        found.push((beam, (reach, self.sieve(turning, &beam))));
     }
 
     /// Halves of a piece that covers so much, where these cover much less or it turns too much to tell.
@@ -144,8 +171,22 @@ impl Gatherer<'_> {
         } else {
             (turning.own.slopes(), 0.0)
         };
-        let reach = Reach::new(of_piece(&turning.corners).into_iter(), &slopes);
+        let reach = Reach::new(of_piece(&turning.corners).into_iter(), &slopes, self.shear);
         Some((Beam { bulge: bulge as f32, ..beam }, reach))
+    }
+
+    /// A first look at a piece, where it stands still.
+    fn sieve(&self, turning: &Turning, beam: &Beam) -> Sieve {
+        let [corners] = &*turning.corners else { return Sieve::OPEN };
+        let corners = beam.piece.corners.map(|uv| mixed(corners, uv));
+        match &*turning.normals {
+            [normals] if beam.shaded => {
+                let normals = beam.piece.corners.map(|uv| mixed(normals, uv));
+                let fan = Fan::new(&normals, self.alpha, turning.eta);
+                fan.map_or(Sieve::OPEN, |fan| Sieve::new(corners, normals, &fan))
+            }
+            _ => Sieve::new(corners, [turning.own.normal; 3], &turning.own),
+        }
     }
 
     /// About what a piece of a flat triangle lights.

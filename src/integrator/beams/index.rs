@@ -6,11 +6,12 @@
 //! ```text
 //! x_st in [p_st] + [h] [e],   [h] = x_z - [p_z],   [h] above 0
 //! ```
-//! in intervals. So beams have no length, need not be cut into pieces, and nothing depends on how the surface lies: it is the
+//! in intervals. It holds as well with the mean slope of all rays taken from e and, times their depth, from places: what a sea
+//! bends is then nearly straight along the third axis. So beams have no length, need not be cut into pieces, and nothing depends on how the surface lies: it is the
 //! hierarchy of positions and normals of Walter, Zhao, Holzschuch and Bala `[WALTER09]` for light of one direction, whose
 //! slopes say what normals do for a light at a point.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::spread::Slopes;
 use crate::geometry::machine::{Work, in_wide_registers};
@@ -31,18 +32,18 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 const DEEPEST: usize = 16;
 
 impl Reach {
-    /// Of points and slopes.
-    pub(super) fn new(points: impl Iterator<Item = DVec3>, slopes: &Slopes) -> Self {
+    /// Of points and slopes, both less a slope that is common to all that is asked for.
+    pub(super) fn new(points: impl Iterator<Item = DVec3>, slopes: &Slopes, shear: DVec2) -> Self {
         let e = ROUNDING;
         let mut own = Self::NOTHING;
-        for p in points {
+        for p in points.map(|p| p - (shear * p.z).extend(0.0)) {
             for (axis, value) in p.as_vec3().to_array().into_iter().enumerate() {
                 own.least[axis] = own.least[axis].min(value - e * value.abs());
                 own.most[axis] = own.most[axis].max(value + e * value.abs());
             }
         }
         for axis in 0..2 {
-            let (least, most) = (slopes.least[axis] as f32, slopes.most[axis] as f32);
+            let [least, most] = [slopes.least, slopes.most].map(|slope| (slope - shear)[axis] as f32);
             own.least[3 + axis] = (least - e * least.abs()).max(f32::MIN);
             own.most[3 + axis] = (most + e * most.abs()).min(f32::MAX);
         }
@@ -81,6 +82,12 @@ impl Reach {
         let wide = |k: usize| self.most[k] - self.least[k] + depth * (self.most[3 + k] - self.least[3 + k]);
         wide(0) * wide(1)
     }
+}
+
+/// A point less a slope that is common to all.
+#[inline]
+pub(super) fn sheared(x: Vec3, shear: Vec2) -> Vec3 {
+    x - (shear * x.z).extend(0.0)
 }
 
 /// The tree.
@@ -253,7 +260,8 @@ impl Builder<'_> {
 mod tests {
     use super::*;
     use crate::sampling::{SampleSeed, SampleStream};
-    use glam::DVec2;
+
+    const SHEAR: DVec2 = DVec2::new(0.1, -0.2);
 
     /// Points on rays from within the boxes: all boxes that they come from are found, and of the others but those which the
     /// intervals cannot tell.
@@ -272,7 +280,7 @@ mod tests {
             .collect();
         let corner = |p: DVec3| [p, p + DVec3::new(0.1, 0.0, 0.01), p + DVec3::new(0.0, 0.1, -0.01)];
         let reaches: Vec<Reach> =
-            all.iter().map(|(p, slopes)| Reach::new(corner(*p).into_iter(), slopes)).collect();
+            all.iter().map(|(p, slopes)| Reach::new(corner(*p).into_iter(), slopes, SHEAR)).collect();
         let (index, order) = Index::new(&reaches, 2.0);
         let (mut visited, mut places) = (0, Vec::new());
         for i in 0..3000_u32 {
@@ -282,7 +290,7 @@ mod tests {
             let from = c[0] + (c[1] - c[0]) * u * (1.0 - v) + (c[2] - c[0]) * v;
             let slope = slopes.least + (slopes.most - slopes.least) * DVec2::new(e, h);
             let x = from + slope.extend(1.0) * (4.0 * h);
-            index.find(x.as_vec3(), &mut places);
+            index.find(sheared(x.as_vec3(), SHEAR.as_vec2()), &mut places);
             let mut found: Vec<u32> = places.iter().map(|k| order[*k as usize]).collect();
             assert!(found.contains(&i), "{i}");
             visited += found.len();

@@ -7,6 +7,8 @@ use super::super::dispersion::Carried;
 use super::super::flight::rounding;
 use super::super::interface;
 use super::super::path::Sample;
+use super::super::roulette::at_random;
+use super::index::sheared;
 use super::patch::{Aim, Patch};
 use super::roots::{self, Root};
 use super::{Beam, Beams};
@@ -25,6 +27,9 @@ struct Shine {
     power: Lanes,
 }
 
+/// Vertices that count less of the path's light than this are looked at with a chance in proportion.
+const WORTH_A_LOOK: f32 = 0.05;
+
 impl<'a> Sample<'a> {
     /// The beams that may reach a vertex with so many interactions before it; `max_depth` must leave room for the interface.
     pub(in crate::integrator) fn beams_to(&self, receiver: &Receiver) -> Option<&'a Beams> {
@@ -32,29 +37,35 @@ impl<'a> Sample<'a> {
         self.beams.filter(|beams| has_room && beams.reach(receiver.medium))
     }
 
-    /// Light of a point of the disc, drawn with `u`, through all triangles; `response` is as in [`Sample::direct`].
+    /// Light of a point of the disc, drawn with `u`, through all triangles, or now and then where that matters little; `response` is as in [`Sample::direct`].
     pub(in crate::integrator) fn sun_through(
         &mut self,
         beams: &Beams,
         receiver: &Receiver,
         response: &impl Fn(Vec3) -> (Lanes, f32),
-        u: [f32; 2],
+        u: [f32; 4],
     ) -> Lanes {
         let frame = self.frame;
         let Some(sun) = &frame.lights.sun else { return Lanes::ZERO };
-        let light = sun.sample(u, self.wavelengths);
+        let survival = at_random((receiver.weight / WORTH_A_LOOK).min(1.0));
+        if u[2] >= survival {
+            return Lanes::ZERO;
+        }
+        let light = sun.sample([u[0], u[1]], self.wavelengths);
         let local = beams.sun.local(light.wi).normalize();
         let shine = Shine { to_sun: light.wi, local, power: light.radiance / light.pdf_w };
-        let x = beams.sun.local(receiver.position);
+        let x = beams.sun.local(receiver.position).as_vec3();
         self.scratch.counters.beam_queries += 1;
         let mut candidates = std::mem::take(&mut self.scratch.candidates);
-        beams.index.find(x.as_vec3(), &mut candidates);
+        beams.index.find(sheared(x, beams.shear.as_vec2()), &mut candidates);
         let mut sum = Lanes::ZERO;
-        for number in &candidates {
-            sum += self.sun_through_one(beams, &beams.beams[*number as usize], receiver, response, &shine);
+        for number in candidates.iter().map(|number| *number as usize) {
+            if beams.sieves[number].holds(x) {
+                sum += self.sun_through_one(beams, &beams.beams[number], receiver, response, &shine);
+            }
         }
         self.scratch.candidates = candidates;
-        sum
+        sum / survival
     }
 
     fn sun_through_one(
@@ -87,10 +98,7 @@ impl<'a> Sample<'a> {
             let eta = etas[lane];
             let x = beams.sun.local(receiver.position);
             let aim = Aim { patch: &patch, x, to_sun: shine.local, eta: f64::from(eta) };
-            roots.clear();
-            if roots::may_meet(&aim, &beam.piece, beam.bulge.into()) {
-                roots::find(&aim, &beam.piece, &mut roots);
-            }
+            roots::find(&aim, &beam.piece, &mut roots);
             for root in &roots {
                 sum += shown * self.sun_along(beams, (beam, &v), &aim, root, receiver, response, shine);
             }

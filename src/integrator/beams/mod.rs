@@ -17,7 +17,7 @@
 //! | once a frame: the triangles that bend light, in pieces where their normals turn much | `gather.rs`, `piece.rs` |
 //! | but those that stand in the shade of something opaque | `shade.rs` |
 //! | where each can send light of the whole disc | `spread.rs` |
-//! | a hierarchy over these, asked for a point | `index.rs` |
+//! | a hierarchy over these, asked for a point, and a first look at what it gives | `index.rs`, `sieve.rs` |
 //! | all solutions g = 0 in a triangle | `patch.rs`, `roots.rs` |
 //! | what they bring, and what is in the way | `light.rs` |
 //!
@@ -37,8 +37,10 @@ mod patch;
 mod piece;
 pub(super) mod roots;
 mod shade;
+mod sieve;
 mod spread;
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::optics::medium::MediumId;
@@ -50,12 +52,17 @@ use index::{Index, Reach};
 use patch::SunFrame;
 use piece::Piece;
 use shade::Shade;
+use sieve::Sieve;
 
 /// The triangles that bend light of the sun, and where they can send it.
 #[derive(Clone, Debug)]
 pub struct Beams {
     sun: SunFrame,
+    /// The mean slope of all rays, which the index leaves out.
+    shear: DVec2,
     beams: Vec<Beam>,
+    /// A first look at each.
+    sieves: Vec<Sieve>,
     index: Index,
     /// Media that these reach, by [`MediumId`].
     reached: Vec<bool>,
@@ -82,18 +89,21 @@ impl Beams {
     pub fn new(frame: &Frame) -> Option<Self> {
         let sun = frame.lights.sun.as_ref()?;
         let depth = 0.5 * frame.accel.bounds().size().max_element();
-        let gatherer = Gatherer {
+        let mut gatherer = Gatherer {
             frame,
             sun: SunFrame::new(sun.direction()),
             shade: Shade::new(frame, sun),
             alpha: f64::from(sun.half_angle()),
             indices: indices(frame),
             depth,
+            shear: DVec2::ZERO,
         };
-        let (beams, reaches): (Vec<Beam>, Vec<Reach>) = (0..frame.geometry.triangles.len() as u32)
-            .into_par_iter()
-            .flat_map_iter(|triangle| gatherer.beams(triangle))
-            .unzip();
+        gatherer.shear = gatherer.mean_slope();
+        let (beams, (reaches, sieves)): (Vec<Beam>, (Vec<Reach>, Vec<Sieve>)) =
+            (0..frame.geometry.triangles.len() as u32)
+                .into_par_iter()
+                .flat_map_iter(|triangle| gatherer.beams(triangle))
+                .unzip();
         let mut reached = vec![false; frame.media.len()];
         for beam in &beams {
             if let Surface::Interface(pair) = frame.surface(beam.triangle) {
@@ -101,8 +111,16 @@ impl Beams {
             }
         }
         let (index, order) = Index::new(&reaches, depth);
+        let sieves = order.iter().map(|number| sieves[*number as usize]).collect();
         let beams: Vec<Beam> = order.into_iter().map(|number| beams[number as usize]).collect();
-        (!beams.is_empty()).then_some(Self { sun: gatherer.sun, beams, index, reached })
+        (!beams.is_empty()).then_some(Self {
+            sun: gatherer.sun,
+            shear: gatherer.shear,
+            beams,
+            sieves,
+            index,
+            reached,
+        })
     }
 
     /// True where light is looked for in a medium.
@@ -123,7 +141,7 @@ impl Beams {
 
     /// Bytes that they occupy.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.beams) + self.index.bytes()
+        size_of_val(&*self.beams) + size_of_val(&*self.sieves) + self.index.bytes()
     }
 }
 

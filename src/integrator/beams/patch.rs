@@ -149,15 +149,6 @@ impl Aim<'_> {
         Some(Bent { direction, cos_i, cos_t, normal, length })
     }
 
-    /// The slope of the ray at (u, v), also where light arrives from behind; none where it is reflected totally.
-    pub(super) fn slope(&self, uv: DVec2) -> Option<DVec2> {
-        let normal = self.patch.normal(uv).normalize_or_zero();
-        let mu = self.to_sun.dot(normal);
-        let squared = 1.0 - self.eta * self.eta * (1.0 - mu * mu);
-        let d = -self.eta * self.to_sun + (self.eta * mu - squared.sqrt()) * normal;
-        (squared > 0.0 && d.z > 0.0).then(|| d.truncate() / d.z)
-    }
-
     /// By how much the ray at (u, v) misses the point.
     pub(super) fn miss(&self, uv: DVec2) -> Option<DVec2> {
         let d = self.bent(uv)?.direction;

@@ -75,35 +75,6 @@ pub(super) fn find(aim: &Aim, whole: &Piece, roots: &mut Vec<Root>) {
     }
 }
 
-/// False where the rays at the corners of a piece tell that none comes to the point; `bulge` is how far slopes are from what is
-/// linear between these, at most.
-///
-/// g is p_st + (x_z - p_z) e, in which p is linear and a product of two linear functions is off by a third of what they change by.
-pub(super) fn may_meet(aim: &Aim, piece: &Piece, bulge: f64) -> bool {
-    let at = piece.corners.map(|uv| aim.patch.at(uv));
-    let depth = at.map(|p| aim.x.z - p.z);
-    let [least, most] = [f64::min, f64::max].map(|f| f(f(depth[0], depth[1]), depth[2]));
-    if most <= 0.0 {
-        return false;
-    }
-    let [Some(a), Some(b), Some(c)] = piece.corners.map(|uv| aim.slope(uv)) else { return true };
-    let turn = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let margin = bulge * most.max(-least) + (most - least) * turn / 3.0 + 1e-13 * aim.x.abs().max_element();
-    let miss = |k: usize, slope: DVec2| (aim.x - at[k]).truncate() - depth[k] * slope;
-    is_near([miss(0, a), miss(1, b), miss(2, c)], margin)
-}
-
-/// False where a triangle is farther than a margin from 0, beyond one of its edges.
-fn is_near([a, b, c]: [DVec2; 3], margin: f64) -> bool {
-    let side = (b - a).perp_dot(c - a);
-    let beyond = |from: DVec2, to: DVec2| {
-        let away = from.perp_dot(to);
-        let away = if side < 0.0 { -away } else { away };
-        away < 0.0 && away * away > margin * margin * from.distance_squared(to)
-    };
-    !(beyond(a, b) || beyond(b, c) || beyond(c, a))
-}
-
 fn add(found: &Search, whole: &Piece, roots: &mut Vec<Root>) {
     let Search::Found(root) = *found else { return };
     if is_within(&root, whole) && roots.iter().all(|other| other.uv.distance_squared(root.uv) > SAME * SAME) {
@@ -126,7 +97,7 @@ impl Piece {
         let alpha = angle(aim.to_sun, DVec3::NEG_Z);
         let Some(fan) = Fan::new(&normals, alpha, [aim.eta; 2]) else { return true };
         let (places, slopes) = (self.corners.map(|uv| aim.patch.at(uv)), fan.slopes());
-        fan.is_lit() && Reach::new(places.into_iter(), &slopes).reaches(aim.x)
+        fan.is_lit() && Reach::new(places.into_iter(), &slopes, DVec2::ZERO).reaches(aim.x)
     }
 
     fn look(&self, aim: &Aim) -> Look {

@@ -127,6 +127,16 @@ impl Fan {
         self.bends().map_or(f64::INFINITY, |bends| bends.bulge)
     }
 
+    /// How far the slopes of all rays of the disc are from that, at most.
+    pub(super) fn loose(&self) -> f64 {
+        self.bends().map_or(f64::INFINITY, |bends| bends.bulge + bends.by_ray)
+    }
+
+    /// Slopes of the rays from the middle of the disc about a normal, at both ends of the index.
+    pub(super) fn slopes_about(&self, normal: DVec3) -> [DVec2; 2] {
+        self.eta.map(|eta| slope_about(normal.normalize_or_zero(), eta))
+    }
+
     /// What curves and widens the slopes; none near total reflection.
     fn bends(&self) -> Option<Bends> {
         let greatest = (angle(self.normal, DVec3::NEG_Z) + self.phi + self.alpha).min(PI);
@@ -195,7 +205,7 @@ struct Bends {
 }
 
 /// The slope of a ray from the middle of the disc behind a normal, also of one that faces away.
-fn slope_about(normal: DVec3, eta: f64) -> DVec2 {
+pub(super) fn slope_about(normal: DVec3, eta: f64) -> DVec2 {
     let mu = -normal.z;
     let c = (1.0 - eta * eta * (1.0 - mu * mu)).max(0.0).sqrt();
     let d = DVec3::new(0.0, 0.0, eta) + (eta * mu - c) * normal;

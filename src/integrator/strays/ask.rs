@@ -12,8 +12,12 @@ use crate::accel::Hit;
 use crate::geometry::Ray;
 use crate::integrator::path::{Branch, Sample};
 use crate::integrator::photon::reflected;
+use crate::integrator::roulette::at_random;
 use crate::scene::geometry::SurfaceHit;
 use crate::spectrum::Lanes;
+
+/// Ways that count less of the path's light than this are asked with a chance in proportion.
+const WORTH_A_LOOK: f32 = 0.05;
 
 impl<'a> Sample<'a> {
     /// Radiance that a surface of albedo 1 reflects of stray photons.
@@ -35,15 +39,19 @@ impl<'a> Sample<'a> {
     pub(in crate::integrator) fn add_strays(
         &mut self,
         pass: &StrayPass,
-        branch: &Branch,
+        branch: &mut Branch,
         (t_max, end): (f32, Option<Hit>),
         left: impl Fn(f32) -> Lanes,
     ) {
+        let survival = at_random((branch.weight() / WORTH_A_LOOK).min(1.0));
+        if survival < 1.0 && branch.stream.next4()[0] >= survival {
+            return;
+        }
         let ray = Ray { t_max, ..self.ray(branch.origin, branch.direction) };
         let end = end.and_then(|hit| self.visible_end(branch, &hit));
         let found =
             self.gathered((&pass.volume, pass.kernel), branch, &ray, end, |_, _, length| left(length));
-        self.radiance += branch.throughput * found;
+        self.radiance += branch.throughput * (found / survival);
     }
 
     /// How far the nearest photon is from spreading to a point, at most `radius`; 0 where one does.
