@@ -11,6 +11,8 @@ use glam::DVec3;
 
 mod agreement;
 mod closed_forms;
+mod dispersion;
+mod motion;
 #[path = "../photons/seeds.rs"]
 mod seeds;
 mod strays;
