@@ -10,6 +10,7 @@ use common::scene::SceneFolder;
 use glam::DVec3;
 
 mod agreement;
+mod ball;
 mod closed_forms;
 mod dispersion;
 mod motion;

@@ -22,11 +22,11 @@ fn crest(p: DVec3) -> f64 {
 }
 
 fn surface(height: impl Fn(DVec3) -> f64) -> TestMesh {
-    let cells = 24;
+    let cells = 26;
     let mut mesh = TestMesh { positions: Vec::new(), triangles: Vec::new() };
     for i in 0..=cells {
         for j in 0..=cells {
-            let [x, y] = [i, j].map(|i| 4.0 * f64::from(i) / f64::from(cells) - 2.0);
+            let [x, y] = [i, j].map(|i| 4.4 * f64::from(i) / f64::from(cells) - 2.2);
             let flat = DVec3::new(x, y, 0.0);
             mesh.positions.push(flat + (1.0 + height(flat)) * DVec3::Z);
         }
@@ -117,6 +117,15 @@ fn assert_is_the_mean_of_its_moments(
     println!("{name}, {normals}: a block of the still picture is {apart:.2} off");
     assert!(apart > 0.1, "{name}: the motion shows too little: {apart}");
     assert_agree(&format!("{name}, {normals}"), &blurred, &means(&by_hand), 0.02);
+}
+
+/// Waves that move on by a fifth of their length, and rise.
+#[test]
+fn waves_that_move_on() {
+    for normals in ["smooth", "flat"] {
+        let velocity = |_: DVec3| DVec3::new(0.25, 0.1, 0.1) / SHUTTER * FPS;
+        assert_is_the_mean_of_its_moments("moving on", &surface(crest), velocity, normals);
+    }
 }
 
 /// Crests become troughs: normals turn by up to 30 degrees, from one side of the vertical as far to the other, which is where
