@@ -1,11 +1,13 @@
 //! Keeps what is done of a frame: on a timer, when it is asked for, and when the run has to stop.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use super::accumulation::Accumulation;
 use super::checkpoint::Checkpoint;
 use super::interrupt::Interrupt;
+use super::ledger::BeamRecord;
 use super::render::{Observer, RenderOptions};
 use super::tiles::Control;
 
@@ -25,6 +27,7 @@ pub(super) struct Keeper<'a> {
     /// Milliseconds between two checkpoints on the timer, and those from the start to the next one.
     every: u64,
     next: AtomicU64,
+    beams: OnceLock<BeamRecord>,
 }
 
 impl<'a> Keeper<'a> {
@@ -47,12 +50,18 @@ impl<'a> Keeper<'a> {
             start: Instant::now(),
             every,
             next: AtomicU64::new(every),
+            beams: OnceLock::new(),
         }
     }
 
     /// The frame goes on, after so many seconds in earlier runs.
     pub fn goes_on(&mut self, seconds: f64) {
         self.before = seconds;
+    }
+
+    /// What the beams of the frame take.
+    pub fn beams(&self) -> BeamRecord {
+        self.beams.get().copied().unwrap_or_default()
     }
 
     /// What the frame has taken so far, in all runs.
@@ -72,6 +81,10 @@ impl Control for Keeper<'_> {
 
     fn stops(&self) -> bool {
         self.interrupt.is_requested()
+    }
+
+    fn built(&self, beams: BeamRecord) {
+        self.beams.get_or_init(|| beams);
     }
 
     fn seconds_left(&self) -> Option<f64> {

@@ -81,6 +81,9 @@ pub struct FrameRecord {
     pub time_budget: Option<f64>,
     /// Estimated relative error; `None` with fewer than two replicates.
     pub relative_error: Option<RelativeError>,
+    /// The triangles that bend the sun's light to where it is looked for.
+    #[serde(flatten)]
+    pub beams: BeamRecord,
     /// Rays and rare events, those before a checkpoint included.
     #[serde(flatten)]
     pub counters: Counters,
@@ -88,6 +91,19 @@ pub struct FrameRecord {
     pub left_out: Vec<String>,
     /// What the user should look at.
     pub warnings: Vec<String>,
+}
+
+/// What [`Beams`] are made of; nothing where a frame has none.
+///
+/// [`Beams`]: crate::integrator::Beams
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BeamRecord {
+    /// Triangles and pieces of them, those whose own normal may be taken for the interpolated one twice.
+    pub beams: usize,
+    /// Bytes that they occupy.
+    pub beam_bytes: usize,
+    /// Seconds that it took to build them, which are among those of rendering.
+    pub beam_seconds: f64,
 }
 
 /// Estimate and confidence interval.
@@ -157,6 +173,7 @@ impl FrameRecord {
             target_error: None,
             time_budget: None,
             relative_error: None,
+            beams: BeamRecord::default(),
             counters: Counters::default(),
             left_out: Vec::new(),
             warnings: Vec::new(),

@@ -10,7 +10,7 @@ use super::fingerprint::Identity;
 use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::keeper::Keeper;
-use super::ledger::{FrameRecord, Ledger, PerPixel, Status};
+use super::ledger::{BeamRecord, FrameRecord, Ledger, PerPixel, Status};
 use super::picture::{FINGERPRINT, MESH_HASH, TIME_BUDGET, denoised_path, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
 use super::stopping::StoppedBy;
@@ -195,8 +195,9 @@ impl<'a> Session<'a> {
         }
         self.sampling.seed = self.seeds.of_frame(task.number)?;
         let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
-        let Drawn { image, counters, stopped_by, dropped } = drawn.ok_or(RenderError::Interrupted)?;
+        let Drawn { image, counters, beams, stopped_by, dropped } = drawn.ok_or(RenderError::Interrupted)?;
         record.counters = counters;
+        record.beams = beams;
         record.samples = image.samples();
         record.samples_per_pixel = PerPixel::of(&image);
         record.samples_dropped = dropped;
@@ -247,7 +248,7 @@ impl<'a> Session<'a> {
         let in_halves = accumulation.in_halves();
         let (image, counters) = accumulation.finish();
         let dropped = in_halves.saturating_sub(image.samples());
-        Some(Drawn { image, counters, stopped_by, dropped })
+        Some(Drawn { image, counters, beams: keeper.beams(), stopped_by, dropped })
     }
 
     /// What to tell of a frame whose error is not sure.
@@ -404,6 +405,7 @@ struct Of<'a> {
 struct Drawn {
     image: FrameImage,
     counters: Counters,
+    beams: BeamRecord,
     stopped_by: StoppedBy,
     dropped: u64,
 }

@@ -4,9 +4,12 @@
 //! the order of the tiles changes a bit. Neither does it matter when rendering is broken off and how often: what is done
 //! is kept in an [`Accumulation`], in which no sample is there twice and none by half.
 
+use std::time::Instant;
+
 use super::accumulation::Accumulation;
 use super::halves::HalfRounds;
 use super::ladder::Ladder;
+use super::ledger::BeamRecord;
 use super::stopping::{StoppedBy, Target};
 use crate::film::{FilmSample, Filter, FrameImage};
 use crate::integrator::{Beams, Counters, EyeSample, Integrator, Pass, PreparedLight, Scratch};
@@ -62,6 +65,8 @@ pub trait Control: Sync {
     }
     /// Saves what is done; nothing is rendered meanwhile.
     fn save(&self, _accumulation: &Accumulation) {}
+    /// Hears what the beams of the frame take, once they are built.
+    fn built(&self, _beams: BeamRecord) {}
     /// Sees the radiance of every sample, lane by lane.
     fn sampled(&self, _radiance: Lanes) {}
 }
@@ -92,7 +97,7 @@ pub fn accumulate(
 ) -> Option<StoppedBy> {
     let sampling = &Sampling { integrator: sampling.integrator.on(&frame.needs), ..sampling.clone() };
     let beams = match &sampling.integrator {
-        Integrator::Beams(_) => Beams::new(frame),
+        Integrator::Beams(_) => build_beams(frame, control),
         _ => None,
     };
     let work = Work { frame, sampling, control, beams: beams.as_ref() };
@@ -109,6 +114,15 @@ pub fn accumulate(
             HalfRounds { target, ladder, control, sample: &sample }.run(accumulation)
         }
     }
+}
+
+fn build_beams(frame: &Frame, control: &dyn Control) -> Option<Beams> {
+    let start = Instant::now();
+    let beams = Beams::new(frame);
+    let seconds = start.elapsed().as_secs_f64();
+    let [count, bytes] = beams.as_ref().map_or([0, 0], |beams| [beams.len(), beams.bytes()]);
+    control.built(BeamRecord { beams: count, beam_bytes: bytes, beam_seconds: seconds });
+    beams
 }
 
 /// What is to be done at every pixel.

@@ -10,7 +10,10 @@ use common::scene::SceneFolder;
 use glam::DVec3;
 
 mod agreement;
+mod ball;
 mod closed_forms;
+mod dispersion;
+mod motion;
 #[path = "../photons/seeds.rs"]
 mod seeds;
 mod strays;

@@ -97,9 +97,8 @@ fn render_writes_pictures_a_ledger_and_a_summary() {
     let folder = melt();
     let outcome = floe(&folder, &["render", "melt"]).ended(0);
     for number in 0..3 {
-        assert!(
-            folder.read(&format!("out/melt/frame_000{number}.exr")).starts_with(&[0x76, 0x2f, 0x31, 0x01])
-        );
+        let picture = folder.read(&format!("out/melt/frame_000{number}.exr"));
+        assert!(picture.starts_with(&[0x76, 0x2f, 0x31, 0x01]));
         assert!(folder.read(&format!("out/melt/frame_000{number}.png")).starts_with(b"\x89PNG"));
     }
     let summary: Vec<&str> = outcome.stdout.lines().collect();
@@ -130,9 +129,12 @@ fn the_ledger_has_a_line_a_frame_with_the_documented_keys() {
         "accel_bytes",
         "accel_bytes_per_triangle",
         "astray_photons",
+        "beam_bytes",
         "beam_candidates",
         "beam_queries",
         "beam_roots",
+        "beam_seconds",
+        "beams",
         "build_seconds",
         "cost_ratio",
         "cut",

@@ -1,0 +1,139 @@
+//! A surface that moves while the shutter is open, against the mean of its moments.
+
+use glam::DVec3;
+
+use crate::common::mesh::{Moving, TestMesh, parallelogram};
+use crate::common::numbers::SplitMix;
+use crate::common::render::Rendered;
+use crate::common::scene::SceneFolder;
+use crate::seeds::{Means, assert_agree};
+use crate::walled;
+
+const SHUTTER: f64 = 0.6;
+/// Frames a second.
+const FPS: f64 = 24.0;
+/// Pictures whose spread tells the error of their mean.
+const REPEATS: u64 = 8;
+const MOMENTS: u32 = 32;
+const HEIGHT: f64 = 0.05;
+
+fn crest(p: DVec3) -> f64 {
+    HEIGHT * (5.0 * p.x + 2.0 * p.y).cos()
+}
+
+fn surface(height: impl Fn(DVec3) -> f64) -> TestMesh {
+    let cells = 26;
+    let mut mesh = TestMesh { positions: Vec::new(), triangles: Vec::new() };
+    for i in 0..=cells {
+        for j in 0..=cells {
+            let [x, y] = [i, j].map(|i| 4.4 * f64::from(i) / f64::from(cells) - 2.2);
+            let flat = DVec3::new(x, y, 0.0);
+            mesh.positions.push(flat + (1.0 + height(flat)) * DVec3::Z);
+        }
+    }
+    let at = |i: u32, j: u32| i * (cells + 1) + j;
+    for i in 0..cells {
+        for j in 0..cells {
+            mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    mesh
+}
+
+fn blocks(picture: &Rendered) -> Vec<DVec3> {
+    let size = [picture.image.width / 4, picture.image.height / 3];
+    let corners = (0..3).flat_map(|j| (0..4).map(move |i| [i * size[0], j * size[1]]));
+    corners.map(|corner| picture.block_mean(corner, size).0).collect()
+}
+
+/// Mean and standard error of each block over pictures.
+fn means(pictures: &[Vec<DVec3>]) -> Means {
+    let n = pictures.len() as f64;
+    let of_block = |block: usize| {
+        let mean = pictures.iter().map(|p| p[block]).sum::<DVec3>() / n;
+        let squares = pictures.iter().map(|p| (p[block] - mean) * (p[block] - mean)).sum::<DVec3>();
+        (mean, (squares / (n * (n - 1.0))).map(f64::sqrt))
+    };
+    (0..pictures[0].len()).map(of_block).collect()
+}
+
+fn text(walls: &str, normals: &str, shutter: f64) -> String {
+    format!(
+        "[media.water]\nior = 1.33\n\
+         [[surfaces]]\nmesh = \"surface_####.ply\"\nfront = \"air\"\nback = \"water\"\nnormals = \"{normals}\"\n\
+         material = {{ kind = \"dielectric\" }}\n\
+         [[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = [0.7, 0.5, 0.3] }}\n\
+         [sun]\ndirection = [0.3, 0.1, 0.9]\nangular_diameter = 0.53\nirradiance = 3\n\
+         [camera]\neye = [0, 0, 0.6]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nvertical_fov = 70\nresolution = [24, 18]\n\
+         shutter = {shutter}\n{walls}[render]\nintegrator = \"beams\"\nmax_depth = 2\n"
+    )
+}
+
+fn folder() -> (SceneFolder, String) {
+    let floor = parallelogram(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0);
+    walled(SceneFolder::new().mesh("floor.ply", &floor), 1.9, 1.2)
+}
+
+/// The mean of moments, one in each of equal parts of the time, at a place in it drawn with `random`.
+fn moments(
+    water: &TestMesh,
+    velocity: impl Fn(DVec3) -> DVec3 + Copy,
+    normals: &str,
+    random: &mut SplitMix,
+) -> Vec<DVec3> {
+    let mut sum = vec![DVec3::ZERO; 12];
+    for k in 0..MOMENTS {
+        let seconds = SHUTTER * (f64::from(k) + random.f64()) / f64::from(MOMENTS) / FPS;
+        let (folder, walls) = folder();
+        let folder = folder.mesh("surface_0001.ply", &water.clone().moved(velocity, seconds));
+        let picture = folder.scene(&text(&walls, normals, 0.0)).render(2, random.next());
+        for (sum, mean) in sum.iter_mut().zip(blocks(&picture)) {
+            *sum += mean / f64::from(MOMENTS);
+        }
+    }
+    sum
+}
+
+/// Eight blurred pictures against as many means of 32 moments: scores of 36 block means, as [`assert_agree`] judges them, and
+/// a still picture that differs.
+fn assert_is_the_mean_of_its_moments(
+    name: &str,
+    water: &TestMesh,
+    velocity: impl Fn(DVec3) -> DVec3 + Copy,
+    normals: &str,
+) {
+    let (folder, walls) = folder();
+    let folder = folder.file("surface_0001.ply", water.moving_ply(velocity).as_bytes());
+    let render = |shutter: f64, samples: u32| {
+        let scene = folder.scene(&text(&walls, normals, shutter));
+        means(&(1..=REPEATS).map(|seed| blocks(&scene.render(samples, seed))).collect::<Vec<_>>())
+    };
+    let (blurred, still) = (render(SHUTTER, 64), render(0.0, 64));
+    let mut random = SplitMix(7);
+    let by_hand: Vec<_> = (0..REPEATS).map(|_| moments(water, velocity, normals, &mut random)).collect();
+    let apart = blurred.iter().zip(&still).map(|(a, b)| ((a.0 - b.0) / b.0).abs().max_element());
+    let apart = apart.fold(0.0, f64::max);
+    println!("{name}, {normals}: a block of the still picture is {apart:.2} off");
+    assert!(apart > 0.1, "{name}: the motion shows too little: {apart}");
+    assert_agree(&format!("{name}, {normals}"), &blurred, &means(&by_hand), 0.02);
+}
+
+/// Waves that move on by a fifth of their length, and rise.
+#[test]
+fn waves_that_move_on() {
+    for normals in ["smooth", "flat"] {
+        let velocity = |_: DVec3| DVec3::new(0.25, 0.1, 0.1) / SHUTTER * FPS;
+        assert_is_the_mean_of_its_moments("moving on", &surface(crest), velocity, normals);
+    }
+}
+
+/// Crests become troughs: normals turn by up to 30 degrees, from one side of the vertical as far to the other, which is where
+/// vertex normals that go straight from the first to the last have the slopes of the moved surface.
+#[test]
+fn crests_that_become_troughs() {
+    for normals in ["smooth", "flat"] {
+        let velocity = |p: DVec3| -2.0 * crest(p) / SHUTTER * FPS * DVec3::Z;
+        assert_is_the_mean_of_its_moments("turning", &surface(crest), velocity, normals);
+    }
+}
