@@ -13,6 +13,7 @@ mod agreement;
 mod ball;
 mod closed_forms;
 mod dispersion;
+mod hero;
 mod motion;
 #[path = "../photons/seeds.rs"]
 mod seeds;

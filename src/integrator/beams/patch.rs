@@ -91,6 +91,11 @@ impl Patch {
         self.normal + self.bends[0] * uv.x + self.bends[1] * uv.y
     }
 
+    /// From (u, v) to a point: rounding is that of how far it is from the triangle, not from the origin.
+    fn way(&self, x: DVec3, uv: DVec2) -> DVec3 {
+        (x - self.corner) - (self.edges[0] * uv.x + self.edges[1] * uv.y)
+    }
+
     pub(super) fn at(&self, uv: DVec2) -> DVec3 {
         self.corner + self.edges[0] * uv.x + self.edges[1] * uv.y
     }
@@ -152,14 +157,14 @@ impl Aim<'_> {
     /// By how much the ray at (u, v) misses the point.
     pub(super) fn miss(&self, uv: DVec2) -> Option<DVec2> {
         let d = self.bent(uv)?.direction;
-        let way = self.x - self.patch.at(uv);
+        let way = self.patch.way(self.x, uv);
         Some(way.truncate() - d.truncate() * (way.z / d.z))
     }
 
     /// The same with all that depends on it.
     pub(super) fn pass(&self, uv: DVec2) -> Option<Pass> {
         let bent = self.bent(uv)?;
-        let way = self.x - self.patch.at(uv);
+        let way = self.patch.way(self.x, uv);
         let d = bent.direction;
         let slope = d.truncate() / d.z;
         let column = |k: usize| {

@@ -260,6 +260,31 @@ mod tests {
         assert!(wrong * 100 < with_roots, "{wrong}");
     }
 
+    /// Rounding of coordinates does not keep the search from its end: small triangles far from the middle of the scene, which
+    /// are as long as a hundred steps of single precision there.
+    #[test]
+    fn roots_are_found_far_from_the_middle() {
+        let (frame, to_sun) = sun();
+        let mut roots = Vec::new();
+        let (mut lost, cases) = (0, 2000);
+        for i in 0..cases {
+            let far = Vec3::new(900.0, -700.0, 300.0);
+            let edge = 100.0 * 6e-5;
+            let corners = [far, far + Vec3::X * edge, far + Vec3::Y * edge];
+            let normals = [0, 1, 2].map(|k| normal(i, k, 0.1));
+            let patch = Patch::new(&frame, &corners, Some(normals), 1.0);
+            let [u, v, depth, _] = numbers(i, 3).map(f64::from);
+            let uv = DVec2::new(u * (1.0 - v), v);
+            let bent =
+                Aim { patch: &patch, x: DVec3::ZERO, to_sun, eta: ETA }.pass(uv).unwrap().bent.direction;
+            let x = patch.at(uv) + bent * (30.0 * f64::from(edge) * depth);
+            let aim = Aim { patch: &patch, x, to_sun, eta: ETA };
+            find(&aim, &Piece::WHOLE, &mut roots);
+            lost += usize::from(!roots.iter().any(|root| root.uv.distance(uv) < 1e-6));
+        }
+        assert_eq!(lost, 0, "of {cases}");
+    }
+
     /// Six triangles around a corner: a point behind an edge, or behind the corner, is lit once.
     #[test]
     fn edges_and_corners_light_once() {

@@ -170,11 +170,11 @@ impl Fan {
 
     /// A cone that holds the refracted rays; none near total reflection.
     ///
-    /// Where the middle normal faces away from the sun, the nearest one that light still grazes takes its place: it is no
-    /// farther from any normal that is lit.
+    /// Where the middle normal faces away from the sun, the nearest one that light still grazes takes its place.
     fn cone(&self) -> Option<(DVec3, f64)> {
         let [_, greatest] = self.incidence()?;
         let normal = self.normal.with_z(self.normal.z.min(0.0)).try_normalize()?;
+        let phi = self.phi + angle(self.normal, normal);
         let middle = refracted(normal, 0.5 * (self.eta[0] + self.eta[1]))?;
         let mut beta = 0.0_f64;
         for eta in self.eta {
@@ -187,7 +187,7 @@ impl Fan {
             // A normal that one point of the disc grazes may face away from another.
             let from_behind =
                 if greatest < FRAC_PI_2 { 0.0 } else { 1.0 + eta * libm::sin(self.alpha) / cos_t };
-            let own = (1.0 - by_ray).abs().max((1.0 - eta).abs()).max(from_behind) * self.phi
+            let own = (1.0 - by_ray).abs().max((1.0 - eta).abs()).max(from_behind) * phi
                 + by_ray.max(eta) * self.alpha
                 + angle(middle, refracted(normal, eta)?);
             beta = beta.max(own);
@@ -229,7 +229,7 @@ fn slopes_of_cone(direction: DVec3, beta: f64) -> Option<Slopes> {
 }
 
 /// Where light from the middle of the disc goes on behind a normal.
-fn refracted(normal: DVec3, eta: f64) -> Option<DVec3> {
+pub(super) fn refracted(normal: DVec3, eta: f64) -> Option<DVec3> {
     let cos_i = -normal.z;
     let squared = 1.0 - eta * eta * (1.0 - cos_i * cos_i);
     (cos_i >= 0.0 && squared > 0.0)
@@ -247,6 +247,47 @@ mod tests {
     use super::*;
     use crate::sampling::{SampleSeed, SampleStream};
     use glam::Vec3;
+
+    /// The same for fans of any index, of three normals or six, of any length, and discs up to 17 degrees wide on each side.
+    #[test]
+    fn slopes_hold_all_rays_of_any_fan() {
+        let (mut lost, mut rays) = (0_u32, 0_u32);
+        for i in 0..100_000_u32 {
+            let mut stream = SampleStream::new(SampleSeed::new(77), i, 0, 0);
+            let mut numbers = || stream.next4().map(f64::from);
+            let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z) * 2.0 - 1.0;
+            let lean = [0.01, 0.05, 0.2, 0.5, 1.0][i as usize % 5];
+            let alpha = [0.0046, 0.05, 0.1, 0.3][i as usize / 5 % 4];
+            let towards_sun = if i % 2 == 0 { 1.2 } else { 0.0 };
+            let middle = (vector(numbers()) - DVec3::Z * towards_sun).normalize();
+            let [at, wide, ..] = numbers();
+            let (eta, wide) = (0.4 + 2.1 * at, 0.03 * wide);
+            let range = [eta * (1.0 - wide), eta * (1.0 + wide)];
+            let normals: Vec<DVec3> = (0..if i % 4 < 2 { 6 } else { 3 })
+                .map(|_| (middle + lean * vector(numbers())).normalize() * (0.8 + 0.4 * numbers()[0]))
+                .collect();
+            let Some(fan) = Fan::new(&normals, alpha, range) else { continue };
+            let slopes = fan.slopes();
+            for k in 0..40 {
+                let mixed = normals.iter().map(|n| *n * numbers()[0].powi(2)).sum::<DVec3>();
+                let normal = normals.get(k).copied().unwrap_or(mixed).normalize();
+                let [x, y, out, along] = numbers();
+                let off = (DVec2::new(x, y) - 0.5).normalize() * libm::tan(alpha * out.sqrt());
+                let to_sun = off.extend(-1.0).normalize();
+                let (eta, mu) = (range[0] + (range[1] - range[0]) * along, to_sun.dot(normal));
+                let squared = 1.0 - eta * eta * (1.0 - mu * mu);
+                if !(mu > 0.0 && squared > 0.0) {
+                    continue;
+                }
+                let d = -eta * to_sun + (eta * mu - squared.sqrt()) * normal;
+                let slope = d.truncate() / d.z;
+                let holds = slope.cmpge(slopes.least).all() && slope.cmple(slopes.most).all();
+                rays += 1;
+                lost += u32::from(!(d.z > 0.0 && fan.is_lit() && holds));
+            }
+        }
+        assert!(lost == 0 && rays > 1_000_000, "{lost} of {rays}");
+    }
 
     /// No ray of any point of the disc through any point of a triangle leaves the bounds, at indices on both sides of 1 and
     /// normals that lean up to a right angle from the sun and from each other; and the bounds are not idle: rays come near
