@@ -112,6 +112,13 @@ pub(super) struct Bent {
     length: f64,
 }
 
+impl Bent {
+    /// True where light arrives from the side of the normal.
+    pub(super) fn is_lit(&self) -> bool {
+        self.cos_i > 0.0
+    }
+}
+
 /// A triangle, a point of the disc, and the point that is to be lit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim<'a> {
@@ -137,7 +144,8 @@ pub(super) struct Pass {
 }
 
 impl Aim<'_> {
-    /// The refracted ray at (u, v); none where light arrives from behind or is reflected totally.
+    /// The refracted ray at (u, v); none where it is reflected totally. Where light arrives from behind the same formulas go on,
+    /// so that what is smooth over a triangle stays so ([`Bent::is_lit`]).
     fn bent(&self, uv: DVec2) -> Option<Bent> {
         let patch = self.patch;
         let mixed = patch.normal(uv);
@@ -145,13 +153,10 @@ impl Aim<'_> {
         let normal = mixed / length;
         let cos_i = self.to_sun.dot(normal);
         let squared = 1.0 - self.eta * self.eta * (1.0 - cos_i * cos_i);
-        // Not a number, of a normal that vanishes, is none either.
-        if !(cos_i > 0.0 && squared > 0.0) {
-            return None;
-        }
         let cos_t = squared.sqrt();
         let direction = -self.eta * self.to_sun + (self.eta * cos_i - cos_t) * normal;
-        Some(Bent { direction, cos_i, cos_t, normal, length })
+        // Not a number, of a normal that vanishes, is none either.
+        (squared > 0.0 && direction.z > 0.0).then_some(Bent { direction, cos_i, cos_t, normal, length })
     }
 
     /// By how much the ray at (u, v) misses the point.

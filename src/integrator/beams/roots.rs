@@ -107,7 +107,7 @@ impl Piece {
             return Look::Nothing;
         }
         let ([Some(a), Some(b), Some(c)], [Some(bc), Some(ca), Some(ab)]) = (at, between) else {
-            // Light arrives from behind at a part of it.
+            // A part of it reflects totally.
             return if self.reaches(aim) { Look::Folded } else { Look::Nothing };
         };
         let control = |middle: DVec2, p: DVec2, q: DVec2| 2.0 * middle - 0.5 * (p + q);
@@ -174,7 +174,9 @@ fn newton(aim: &Aim, start: DVec2) -> Search {
 
 /// True for a root in a piece, or on those of its edges that belong to it.
 fn is_within(root: &Root, piece: &Piece) -> bool {
-    root.pass.depth > 0.0 && piece.holds(root.uv, -(root.pass.jacobian.inverse() * SHIFT))
+    root.pass.depth > 0.0
+        && root.pass.bent.is_lit()
+        && piece.holds(root.uv, -(root.pass.jacobian.inverse() * SHIFT))
 }
 
 #[cfg(test)]

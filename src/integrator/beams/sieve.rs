@@ -97,7 +97,7 @@ mod tests {
                 let (sin, cos) = (libm::sin(6.3 * turn), libm::cos(6.3 * turn));
                 let to_sun = DVec3::new(off * cos, off * sin, -1.0).normalize();
                 let aim = Aim { patch: &patch, x: DVec3::ZERO, to_sun, eta: eta * (0.995 + 0.01 * blend) };
-                let Some(pass) = aim.pass(uv) else { continue };
+                let Some(pass) = aim.pass(uv).filter(|pass| pass.bent.is_lit()) else { continue };
                 let d = pass.bent.direction;
                 let x = patch.at(uv) + d * (3.0 * depth / d.z);
                 assert!(sieve.holds(x.as_vec3()), "{i} {uv}");

@@ -96,9 +96,9 @@ impl Fan {
         (middle - wide < FRAC_PI_2).then(|| [(middle - wide).max(0.0), (middle + wide).min(FRAC_PI_2)])
     }
 
-    /// True where some light of the disc arrives from the side of some normal.
+    /// True where some light of the disc arrives from the side of some normal and may be refracted.
     pub(super) fn is_lit(&self) -> bool {
-        self.incidence().is_some()
+        self.incidence().is_some_and(|[least, _]| self.eta[0] * libm::sin(least) < 1.0)
     }
 
     /// The greatest angle between a refracted ray and the normal that it is bent about.
@@ -325,7 +325,7 @@ mod tests {
                 let (sin, cos) = (libm::sin(6.3 * turn), libm::cos(6.3 * turn));
                 let to_sun = DVec3::new(off * cos, off * sin, -1.0).normalize();
                 let aim = Aim { patch: &patch, x: DVec3::ZERO, to_sun, eta: eta * (0.99 + 0.02 * out) };
-                let Some(pass) = aim.pass(uv) else { continue };
+                let Some(pass) = aim.pass(uv).filter(|pass| pass.bent.is_lit()) else { continue };
                 let d = pass.bent.direction;
                 let slope = d.truncate() / d.z;
                 assert!(d.z > 0.0 && fan.is_lit(), "{i}: {d}");
