@@ -430,12 +430,6 @@ impl Branch {
         }
     }
 
-    /// How much of the light that arrives counts, without the factors of the boundaries; 1 at the eye.
-    #[inline]
-    pub(super) fn weight(&self) -> f32 {
-        self.throughput.max_element() / self.index_factor
-    }
-
     /// Counts an interaction with a surface and plays Russian roulette with `u`.
     pub(super) fn interacted(&mut self, u: f32) -> Fate {
         self.bounces += 1;

@@ -1,5 +1,7 @@
 //! Chances of random numbers that are multiples of 2^-24, as all are here.
 
+use super::path::Branch;
+
 /// A probability as random numbers have it, which are multiples of 2^-24: those below it are rounded up.
 ///
 /// Of a path of throughput 1e-9 one random number in 2^24, which is 0, is still below its chance to survive; if it were
@@ -13,6 +15,14 @@ pub(super) fn at_random(probability: f32) -> f32 {
         probability
     } else {
         (probability * NUMBERS).ceil() / NUMBERS
+    }
+}
+
+impl Branch {
+    /// How much of the light that arrives counts, without the factors of the boundaries; 1 at the eye.
+    #[inline]
+    pub(super) fn weight(&self) -> f32 {
+        self.throughput.max_element() / self.index_factor
     }
 }
 

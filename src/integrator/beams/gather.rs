@@ -4,17 +4,21 @@
 //! with a box of its own, as long as these cover much less.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
-use super::Beam;
-use super::index::Reach;
+use super::index::{Index, Reach};
 use super::patch::SunFrame;
 use super::piece::Piece;
 use super::shade::Shade;
 use super::sieve::Sieve;
 use super::spread::{Fan, Slopes, angle, slope_about};
+use super::{Beam, Beams};
 use crate::geometry::triangle::scaled_normal;
+use crate::light::Sun;
+use crate::optics::medium::Medium;
 use crate::scene::frame::Frame;
 use crate::scene::surface::{MediumPair, Surface};
+use crate::spectrum::Wavelengths;
 
 /// Halves must cover less than this part of the whole.
 const GAIN: f32 = 0.7;
@@ -25,18 +29,52 @@ const LOOSE: f32 = 0.02;
 /// Triangles are cut so often, at most.
 const MOST_CUTS: u32 = 8;
 
-pub(super) struct Gatherer<'a> {
-    pub(super) frame: &'a Frame,
-    pub(super) sun: SunFrame,
-    pub(super) shade: Shade<'a>,
+/// Wavelengths at which indices are looked up: so many times four.
+const STEPS: u32 = 16;
+
+impl Beams {
+    /// Those of a frame; `None` without any.
+    pub fn new(frame: &Frame) -> Option<Self> {
+        let sun = frame.lights.sun.as_ref()?;
+        let depth = 0.5 * frame.accel.bounds().size().max_element();
+        let gatherer = Gatherer::new(frame, sun, depth);
+        let (beams, (reaches, sieves)): (Vec<Beam>, (Vec<Reach>, Vec<Sieve>)) =
+            (0..frame.geometry.triangles.len() as u32)
+                .into_par_iter()
+                .flat_map_iter(|triangle| gatherer.beams(triangle))
+                .unzip();
+        let mut reached = vec![false; frame.media.len()];
+        for beam in &beams {
+            if let Surface::Interface(pair) = frame.surface(beam.triangle) {
+                reached[pair.crossed(beam.front).1.0 as usize] = true;
+            }
+        }
+        let (index, order) = Index::new(&reaches, depth);
+        let sieves = order.iter().map(|number| sieves[*number as usize]).collect();
+        let beams: Vec<Beam> = order.into_iter().map(|number| beams[number as usize]).collect();
+        (!beams.is_empty()).then_some(Self {
+            sun: gatherer.sun,
+            shear: gatherer.shear,
+            beams,
+            sieves,
+            index,
+            reached,
+        })
+    }
+}
+
+struct Gatherer<'a> {
+    frame: &'a Frame,
+    sun: SunFrame,
+    shade: Shade<'a>,
     /// Half angle of the disc.
-    pub(super) alpha: f64,
+    alpha: f64,
     /// Least and greatest index of each medium.
-    pub(super) indices: Vec<[f64; 2]>,
+    indices: Vec<[f64; 2]>,
     /// How far behind triangles light is looked for, about.
-    pub(super) depth: f32,
+    depth: f32,
     /// The mean slope of all rays, about.
-    pub(super) shear: DVec2,
+    shear: DVec2,
 }
 
 /// A triangle at the first and the last moment, in the frame of the sun; once where these are the same.
@@ -64,9 +102,23 @@ impl Turning {
     }
 }
 
-impl Gatherer<'_> {
+impl<'a> Gatherer<'a> {
+    fn new(frame: &'a Frame, sun: &Sun, depth: f32) -> Self {
+        let mut own = Self {
+            frame,
+            sun: SunFrame::new(sun.direction()),
+            shade: Shade::new(frame, sun),
+            alpha: f64::from(sun.half_angle()),
+            indices: indices(frame),
+            depth,
+            shear: DVec2::ZERO,
+        };
+        own.shear = own.mean_slope();
+        own
+    }
+
     /// The beams of both sides of a triangle.
-    pub(super) fn beams(&self, triangle: u32) -> Vec<Gathered> {
+    fn beams(&self, triangle: u32) -> Vec<Gathered> {
         let mut found = Vec::new();
         let frame = self.frame;
         let Surface::Interface(pair) = frame.surface(triangle) else { return found };
@@ -86,7 +138,7 @@ impl Gatherer<'_> {
     }
 
     /// The slope of rays that are bent about the triangles' own normals, in the mean over the light that they take.
-    pub(super) fn mean_slope(&self) -> DVec2 {
+    fn mean_slope(&self) -> DVec2 {
         let (mut sum, mut light) = (DVec2::ZERO, 0.0);
         for triangle in 0..self.frame.geometry.triangles.len() as u32 {
             let Surface::Interface(pair) = self.frame.surface(triangle) else { continue };
@@ -218,6 +270,21 @@ impl Gatherer<'_> {
         let [start, middle, end] = [first, 0.5 * (first + last), last].map(scaled);
         [start, 2.0 * middle - 0.5 * (start + end), end]
     }
+}
+
+/// Least and greatest index of each medium over wavelength.
+fn indices(frame: &Frame) -> Vec<[f64; 2]> {
+    let of_medium = |medium: &Medium| {
+        let all = (0..STEPS).flat_map(|i| {
+            let at = (i as f32 + 0.5) / STEPS as f32;
+            medium.lanes(&Wavelengths::for_mode(frame.mode, 0.25 * at)).n.to_array()
+        });
+        let (least, most) = all.fold((f32::MAX, 0.0_f32), |(l, m), n| (l.min(n), m.max(n)));
+        // Between two of the wavelengths, and beyond the last, it may be a little off.
+        let beyond = 0.2 * (most - least);
+        [f64::from(least - beyond), f64::from(most + beyond)]
+    };
+    frame.media.iter().map(of_medium).collect()
 }
 
 /// True when no ray of the sun can be bent about the triangle's own normal in the place of interpolated ones: the normals, the

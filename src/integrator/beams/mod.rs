@@ -41,17 +41,11 @@ mod sieve;
 mod spread;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::optics::medium::MediumId;
-use crate::scene::frame::Frame;
-use crate::scene::surface::Surface;
-use crate::spectrum::Wavelengths;
-use gather::Gatherer;
-use index::{Index, Reach};
+use index::Index;
 use patch::SunFrame;
 use piece::Piece;
-use shade::Shade;
 use sieve::Sieve;
 
 /// The triangles that bend light of the sun, and where they can send it.
@@ -81,48 +75,7 @@ struct Beam {
     bulge: f32,
 }
 
-/// Wavelengths at which indices are looked up: so many times four.
-const STEPS: u32 = 16;
-
 impl Beams {
-    /// Those of a frame; `None` without any.
-    pub fn new(frame: &Frame) -> Option<Self> {
-        let sun = frame.lights.sun.as_ref()?;
-        let depth = 0.5 * frame.accel.bounds().size().max_element();
-        let mut gatherer = Gatherer {
-            frame,
-            sun: SunFrame::new(sun.direction()),
-            shade: Shade::new(frame, sun),
-            alpha: f64::from(sun.half_angle()),
-            indices: indices(frame),
-            depth,
-            shear: DVec2::ZERO,
-        };
-        gatherer.shear = gatherer.mean_slope();
-        let (beams, (reaches, sieves)): (Vec<Beam>, (Vec<Reach>, Vec<Sieve>)) =
-            (0..frame.geometry.triangles.len() as u32)
-                .into_par_iter()
-                .flat_map_iter(|triangle| gatherer.beams(triangle))
-                .unzip();
-        let mut reached = vec![false; frame.media.len()];
-        for beam in &beams {
-            if let Surface::Interface(pair) = frame.surface(beam.triangle) {
-                reached[pair.crossed(beam.front).1.0 as usize] = true;
-            }
-        }
-        let (index, order) = Index::new(&reaches, depth);
-        let sieves = order.iter().map(|number| sieves[*number as usize]).collect();
-        let beams: Vec<Beam> = order.into_iter().map(|number| beams[number as usize]).collect();
-        (!beams.is_empty()).then_some(Self {
-            sun: gatherer.sun,
-            shear: gatherer.shear,
-            beams,
-            sieves,
-            index,
-            reached,
-        })
-    }
-
     /// True where light is looked for in a medium.
     pub(super) fn reach(&self, medium: MediumId) -> bool {
         self.reached[medium.0 as usize]
@@ -143,19 +96,4 @@ impl Beams {
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.beams) + size_of_val(&*self.sieves) + self.index.bytes()
     }
-}
-
-/// Least and greatest index of each medium over wavelength.
-fn indices(frame: &Frame) -> Vec<[f64; 2]> {
-    let of_medium = |medium: &crate::optics::medium::Medium| {
-        let all = (0..STEPS).flat_map(|i| {
-            let at = (i as f32 + 0.5) / STEPS as f32;
-            medium.lanes(&Wavelengths::for_mode(frame.mode, 0.25 * at)).n.to_array()
-        });
-        let (least, most) = all.fold((f32::MAX, 0.0_f32), |(l, m), n| (l.min(n), m.max(n)));
-        // Between two of the wavelengths, and beyond the last, it may be a little off.
-        let beyond = 0.2 * (most - least);
-        [f64::from(least - beyond), f64::from(most + beyond)]
-    };
-    frame.media.iter().map(of_medium).collect()
 }

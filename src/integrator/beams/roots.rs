@@ -52,7 +52,8 @@ pub(super) fn find(aim: &Aim, whole: &Piece, roots: &mut Vec<Root>) {
         return;
     }
     // Each cut puts four in the place of one.
-    let mut pieces = [Piece { cuts: 0, ..*whole }; 3 * MOST_CUTS as usize + 1];
+    // A piece was cut into halves: two of these are worth one of ours.
+    let mut pieces = [Piece { cuts: whole.cuts / 2, ..*whole }; 3 * MOST_CUTS as usize + 1];
     let (mut waiting, mut looks) = (1, 0);
     while waiting > 0 {
         (waiting, looks) = (waiting - 1, looks + 1);
