@@ -1,4 +1,4 @@
-//! Sunlight that neither next-event estimation nor beams find, by photons beside both ([`super::photon::stray`] says which
+//! Sunlight that neither next-event estimation nor beams find, by photons beside both (`photon/stray.rs` says which
 //! it is).
 //!
 //! Each sample of every pixel is a pass with photons of its own, as in photon mapping, and the mean over passes converges as
