@@ -49,6 +49,7 @@ fn frame_of(job: &Job, index: usize) -> Prepared {
     let meshes = task.read(&job.world).unwrap_or_else(|e| panic!("{e}")).meshes;
     let assembled = job.world.assemble(task.number, meshes, None).unwrap_or_else(|e| panic!("{e}"));
     let mut sampling = Sampling::new(&job.world.description.render);
+    sampling.integrator = sampling.integrator.on(&assembled.frame.needs);
     sampling.seed.frame = task.number.millionths();
     Prepared { frame: assembled.frame, sampling }
 }
