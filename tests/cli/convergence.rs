@@ -82,9 +82,10 @@ fn light_that_an_integrator_leaves_out_is_a_bias() {
     let folder = boxes(1, &format!("{sun}{floor}"));
     let low = small::cuboid(glam::DVec3::new(-2.0, -2.0, -1.2), glam::DVec3::new(2.0, 2.0, -1.1));
     folder.write("boxes/floor.ply", small::ply(&low));
-    let outcome = floe(&folder, &[&FEW[..], &["-o", "here"]].concat()).ended(0);
+    let both = ["--integrators", "path,photon", "-o", "here"];
+    let outcome = floe(&folder, &[&FEW[..], &both].concat()).ended(0);
     assert!(
-        outcome.stdout.contains("(photon, ") && outcome.stdout.contains("(leaves out sunlight"),
+        outcome.stdout.contains("(beams, ") && outcome.stdout.contains("(leaves out sunlight"),
         "{outcome:#?}"
     );
     let value: serde_json::Value = serde_json::from_slice(&folder.read("here/study.json")).unwrap();
