@@ -18,6 +18,14 @@ pub(super) fn at_random(probability: f32) -> f32 {
     }
 }
 
+/// The chance with which light is looked for that takes long to find, for a path of a weight ([`Branch::weight`]).
+#[inline]
+pub(super) fn chance_of_a_look(weight: f32) -> f32 {
+    /// Below this a look costs more than it brings: it is taken with a chance in proportion.
+    const WORTH_A_LOOK: f32 = 0.05;
+    at_random((weight / WORTH_A_LOOK).min(1.0))
+}
+
 impl Branch {
     /// How much of the light that arrives counts, without the factors of the boundaries; 1 at the eye.
     #[inline]

@@ -25,7 +25,7 @@ const GAIN: f32 = 0.7;
 /// Triangles that cover less than so many times their own area behind them are not worth a try.
 const COMPACT: f32 = 3.0;
 /// Slopes that are farther than this from linear tell too little.
-const LOOSE: f32 = 0.02;
+const LOOSE: f64 = 0.02;
 /// Triangles are cut so often, at most.
 const MOST_CUTS: u32 = 8;
 
@@ -128,7 +128,7 @@ impl<'a> Gatherer<'a> {
                 continue;
             }
             let Some(turning) = self.turning(triangle, pair, front) else { continue };
-            let whole = Beam { triangle, front, shaded: false, piece: Piece::WHOLE, bulge: 0.0 };
+            let whole = Beam { triangle, front, shaded: false, piece: Piece::WHOLE };
             if !turning.normals.is_empty() {
                 self.pieces(&turning, Beam { shaded: true, ..whole }, &mut found);
             }
@@ -174,12 +174,12 @@ impl<'a> Gatherer<'a> {
 
     /// Those of a piece, in halves where its rays are within wide bounds.
     fn pieces(&self, turning: &Turning, beam: Beam, found: &mut Vec<Gathered>) {
-        let Some((beam, reach)) = self.piece(turning, beam) else { return };
+        let Some((reach, bulge)) = self.piece(turning, beam) else { return };
         if self.shade.covers(beam.triangle, &beam.piece) {
             return;
         }
         if beam.piece.cuts < MOST_CUTS
-            && let Some(halves) = self.halves(turning, &beam, reach.area(self.depth))
+            && let Some(halves) = self.halves(turning, &beam, reach.area(self.depth), bulge)
         {
             for piece in halves {
                 self.pieces(turning, Beam { piece, ..beam }, found);
@@ -190,8 +190,8 @@ impl<'a> Gatherer<'a> {
     }
 
     /// Halves of a piece that covers so much, where these cover much less or it turns too much to tell.
-    fn halves(&self, turning: &Turning, beam: &Beam, area: f32) -> Option<[Piece; 2]> {
-        if beam.bulge > LOOSE {
+    fn halves(&self, turning: &Turning, beam: &Beam, area: f32, bulge: f64) -> Option<[Piece; 2]> {
+        if bulge > LOOSE {
             return Some(beam.piece.halves(turning.steadiest(&beam.piece)));
         }
         if area < COMPACT * self.own_area(turning, &beam.piece) {
@@ -199,15 +199,15 @@ impl<'a> Gatherer<'a> {
         }
         let covered = |halves: &[Piece; 2]| {
             let halves = halves.iter().filter_map(|&piece| self.piece(turning, Beam { piece, ..*beam }));
-            halves.map(|(_, reach)| reach.area(self.depth)).sum::<f32>()
+            halves.map(|(reach, _)| reach.area(self.depth)).sum::<f32>()
         };
         let ways = [0, 1, 2].map(|corner| beam.piece.halves(corner)).map(|halves| (covered(&halves), halves));
         let best = ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         best.filter(|best| best.0 < GAIN * area).map(|best| best.1)
     }
 
-    /// Bounds of a piece; none where it bends no light.
-    fn piece(&self, turning: &Turning, beam: Beam) -> Option<(Beam, Reach)> {
+    /// Bounds of a piece, and how far its slopes are from linear, at most; none where it bends no light.
+    fn piece(&self, turning: &Turning, beam: Beam) -> Option<(Reach, f64)> {
         let of_piece = |all: &[[DVec3; 3]]| -> Vec<DVec3> {
             all.iter().flat_map(|of_time| beam.piece.corners.map(|uv| mixed(of_time, uv))).collect()
         };
@@ -224,7 +224,7 @@ impl<'a> Gatherer<'a> {
             (turning.own.slopes(), 0.0)
         };
         let reach = Reach::new(of_piece(&turning.corners).into_iter(), &slopes, self.shear);
-        Some((Beam { bulge: bulge as f32, ..beam }, reach))
+        Some((reach, bulge))
     }
 
     /// A first look at a piece, where it stands still.

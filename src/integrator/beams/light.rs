@@ -7,7 +7,7 @@ use super::super::dispersion::Carried;
 use super::super::flight::rounding;
 use super::super::interface;
 use super::super::path::Sample;
-use super::super::roulette::at_random;
+use super::super::roulette::chance_of_a_look;
 use super::index::sheared;
 use super::patch::{Aim, Patch};
 use super::roots::{self, Root};
@@ -17,7 +17,7 @@ use crate::geometry::Ray;
 use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
-/// A point of the sun's disc and how it shines.
+/// A point of the sun's disc, how it shines, and what it is to light.
 #[derive(Clone, Copy)]
 struct Shine {
     /// Direction to it, in the world and in the frame of the sun.
@@ -25,10 +25,9 @@ struct Shine {
     local: DVec3,
     /// Its irradiance.
     power: Lanes,
+    /// The vertex, in the frame of the sun.
+    x: DVec3,
 }
-
-/// Vertices that count less of the path's light than this are looked at with a chance in proportion.
-const WORTH_A_LOOK: f32 = 0.05;
 
 impl<'a> Sample<'a> {
     /// The beams that may reach a vertex with so many interactions before it; `max_depth` must leave room for the interface.
@@ -37,7 +36,8 @@ impl<'a> Sample<'a> {
         self.beams.filter(|beams| has_room && beams.reach(receiver.medium))
     }
 
-    /// Light of a point of the disc, drawn with `u`, through all triangles, or now and then where that matters little; `response` is as in [`Sample::direct`].
+    /// Light of a point of the disc, drawn with `u`, through all triangles, or now and then where that matters little;
+    /// `response` is as in [`Sample::direct`].
     pub(in crate::integrator) fn sun_through(
         &mut self,
         beams: &Beams,
@@ -47,14 +47,15 @@ impl<'a> Sample<'a> {
     ) -> Lanes {
         let frame = self.frame;
         let Some(sun) = &frame.lights.sun else { return Lanes::ZERO };
-        let survival = at_random((receiver.weight / WORTH_A_LOOK).min(1.0));
+        let survival = chance_of_a_look(receiver.weight);
         if u[2] >= survival {
             return Lanes::ZERO;
         }
         let light = sun.sample([u[0], u[1]], self.wavelengths);
         let local = beams.sun.local(light.wi).normalize();
-        let shine = Shine { to_sun: light.wi, local, power: light.radiance / light.pdf_w };
-        let x = beams.sun.local(receiver.position).as_vec3();
+        let at = beams.sun.local(receiver.position);
+        let shine = Shine { to_sun: light.wi, local, power: light.radiance / light.pdf_w, x: at };
+        let x = at.as_vec3();
         self.scratch.counters.beam_queries += 1;
         let mut candidates = std::mem::take(&mut self.scratch.candidates);
         beams.index.find(sheared(x, beams.shear.as_vec2()), &mut candidates);
@@ -96,8 +97,7 @@ impl<'a> Sample<'a> {
                 _ => Lanes::AXES[lane],
             };
             let eta = etas[lane];
-            let x = beams.sun.local(receiver.position);
-            let aim = Aim { patch: &patch, x, to_sun: shine.local, eta: f64::from(eta) };
+            let aim = Aim { patch: &patch, x: shine.x, to_sun: shine.local, eta: f64::from(eta) };
             roots::find(&aim, &beam.piece, &mut roots);
             for root in &roots {
                 sum += shown * self.sun_along(beams, (beam, &v), &aim, root, receiver, response, shine);

@@ -27,8 +27,8 @@
 //!
 //! What is found so has one refracting interface between the vertex and the sun, and otherwise only index-matched boundaries.
 //! Light that is bent twice or reflected on its way, as that through meshes that overlap others, is that of photons
-//! ([`super::strays`]). A path that
-//! sees the disc through interfaces alone has it as before, and one that was lit never sees it: nothing counts twice.
+//! ([`super::strays`]). A path that sees the disc through interfaces alone has it as before, and one that was lit never sees
+//! it: nothing counts twice.
 
 mod gather;
 mod index;
@@ -71,8 +71,6 @@ struct Beam {
     shaded: bool,
     /// The part of it, where its normals turn too much for the whole.
     piece: Piece,
-    /// How far slopes are from what is linear between its corners, at most.
-    bulge: f32,
 }
 
 impl Beams {

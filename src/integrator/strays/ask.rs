@@ -12,12 +12,9 @@ use crate::accel::Hit;
 use crate::geometry::Ray;
 use crate::integrator::path::{Branch, Sample};
 use crate::integrator::photon::reflected;
-use crate::integrator::roulette::at_random;
+use crate::integrator::roulette::chance_of_a_look;
 use crate::scene::geometry::SurfaceHit;
 use crate::spectrum::Lanes;
-
-/// Ways that count less of the path's light than this are asked with a chance in proportion.
-const WORTH_A_LOOK: f32 = 0.05;
 
 impl<'a> Sample<'a> {
     /// Radiance that a surface of albedo 1 reflects of stray photons.
@@ -43,7 +40,7 @@ impl<'a> Sample<'a> {
         (t_max, end): (f32, Option<Hit>),
         left: impl Fn(f32) -> Lanes,
     ) {
-        let survival = at_random((branch.weight() / WORTH_A_LOOK).min(1.0));
+        let survival = chance_of_a_look(branch.weight());
         if survival < 1.0 && branch.stream.next4()[0] >= survival {
             return;
         }
