@@ -92,25 +92,26 @@ fn threads_order_company_and_repetition_change_no_byte() {
     assert_eq!(different.len(), 6, "the frames do differ");
 }
 
-/// Photons of the sun through moving water, in maps that several threads fill.
+const SUNS: &str = "[[sun]]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n\
+                    [[sun]]\ndirection = [-0.4, 0.3, 0.6]\nirradiance = 1\nangular_diameter = 3\n";
+
+/// Photons of two suns through moving water, in maps that several threads fill.
 #[test]
 fn photons_change_no_byte_either() {
     let text = shipped_scene(4).replace("[render]\n", "[render]\nintegrator = \"photon\"\n");
     let text = text.replace("scattering = 7 ", "scattering = 1 ");
-    let sun = "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n";
-    let folder = wobbling_in(&format!("{text}{sun}"));
+    let folder = wobbling_in(&format!("{text}{SUNS}"));
     let (sequence, refitted) = pictures(&folder, "0-2", 2);
     assert_eq!((sequence.len(), refitted), (6, vec![false, true, true]));
     assert_eq!(pictures(&folder, "0-2", 1).0, sequence, "one thread");
     assert_eq!(pictures(&folder, "2,1,0", 5).0, sequence, "more threads than cores, another order");
 }
 
-/// The sun through moving water, looked for from every particle, and by photons through what is bent twice.
+/// Two suns through moving water, looked for from every particle, and by photons through what is bent twice.
 #[test]
 fn beams_change_no_byte_either() {
     let text = shipped_scene(4).replace("[render]\n", "[render]\nintegrator = \"beams\"\n");
-    let sun = "[sun]\ndirection = [0.3, -0.2, 0.9]\nirradiance = 2\n";
-    let folder = wobbling_in(&format!("{text}{sun}"));
+    let folder = wobbling_in(&format!("{text}{SUNS}"));
     let report = folder.render(RenderOptions::default());
     assert!(report.frames[0].counters.photons > 0, "nothing is bent twice");
     std::fs::remove_dir_all(folder.path("out")).unwrap();

@@ -47,7 +47,7 @@ fn an_empty_file_has_every_default() {
         (&air.scattering, &air.phase),
         (&Spectrum::Constant(0.0), &PhaseFunction::Isotropic(Isotropic).into())
     );
-    assert_eq!((scene.domain, scene.surfaces.len(), scene.sun), (None, 0, None));
+    assert_eq!((scene.domain, scene.surfaces.len(), scene.suns.len()), (None, 0, 0));
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Constant(0.0)));
     assert_eq!(scene.camera.placement, None);
     assert_eq!((scene.camera.up, scene.camera.fov), (Vec3::Z, FieldOfView::Vertical(40.0)));
@@ -78,7 +78,7 @@ fn a_whole_scene_is_read_as_written() {
     assert_eq!(sea.phase, PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }).into());
     assert_eq!((scene.render.similarity, scene.render.seed_mode), (2, Some(SeedMode::Sequence)));
     assert!(scene.render.dispersion);
-    let sun = scene.sun.unwrap();
+    let sun = &scene.suns[0];
     assert!((sun.direction.length() - 1.0).abs() < 1e-6 && sun.direction.x / sun.direction.y > 1.99);
     let placement = Placement { eye: DVec3::new(1.1, 2.3, 2.3), target: DVec3::new(0.0, 0.5, 0.0) };
     assert_eq!(scene.camera.placement, Some(placement));
@@ -115,7 +115,7 @@ fn spectra_in_every_form() {
     };
     assert_eq!(scene.media["glass"].ior, glass);
     let irradiance = Spectrum::Blackbody { temperature: 5778.0, luminance: 100_000.0 / 683.0 };
-    assert_eq!(scene.sun.unwrap().irradiance, irradiance);
+    assert_eq!(scene.suns[0].irradiance, irradiance);
     assert_eq!(scene.sky, SkyDescription::Constant(Spectrum::Planck { temperature: 1500.0 }));
     assert_eq!(scene.render.seed, u64::MAX);
     assert_eq!(example("plain numbers").render.integrator, IntegratorKind::Fog);

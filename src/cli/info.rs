@@ -105,15 +105,16 @@ fn describe_job(job: &Job) -> String {
 
 fn describe_lights(scene: &SceneDescription) -> String {
     let up = scene.frames.as_ref().map_or(Axis::Z, |frames| frames.up);
-    let daylight = Daylight::new(scene.sun.as_ref(), &scene.sky, up);
+    let daylight = Daylight::new(&scene.suns, &scene.sky, up);
     let mut text = String::new();
-    if let Some(sun) = &scene.sun {
+    let light = |light: &Daylight| format!("{:.0} lx, {:.0} on level ground", light.sun, light.sun_level);
+    if scene.suns.len() > 1 {
+        let _ = writeln!(text, "suns      {}, {}", scene.suns.len(), light(&daylight));
+    }
+    for sun in &scene.suns {
         let [elevation, azimuth] = sun.angles(up);
-        let _ = writeln!(
-            text,
-            "sun       elevation {elevation:.2}, azimuth {azimuth:.2} degrees, {:.0} lx, {:.0} on level ground",
-            daylight.sun, daylight.sun_level
-        );
+        let own = light(&Daylight::new(std::slice::from_ref(sun), &SkyDescription::default(), up));
+        let _ = writeln!(text, "sun       elevation {elevation:.2}, azimuth {azimuth:.2} degrees, {own}");
     }
     match (&scene.sky, daylight.sky_level) {
         (SkyDescription::Image { image }, _) => {

@@ -2,8 +2,8 @@
 //!
 //! Only index-matched boundaries may lie in between; what is refracted or reflected on the way is found by chance, or by a
 //! guess of where it comes from ([`super::beneath`]).
-//! Each kind of light gets one sample, weighted against the chance of running into it by the balance heuristic. The sun
-//! is never run into, so its samples count in full.
+//! Each sun and each other kind of light gets one sample, weighted against the chance of running into it by the balance
+//! heuristic. Suns are never run into, so their samples count in full.
 
 use glam::Vec3;
 
@@ -53,7 +53,7 @@ impl Sample<'_> {
             None => Lanes::ZERO,
             Some(beams) => {
                 let v = stream.next4();
-                self.sun_through(beams, receiver, &response, v)
+                self.suns_through(beams, receiver, &response, v)
             }
         };
         if let Some(beneath) = self.looks_beneath(receiver.medium, receiver.interactions) {
@@ -63,7 +63,7 @@ impl Sample<'_> {
             return sum;
         }
         let lights = &frame.lights;
-        if let Some(sun) = lights.sun.as_ref().filter(|_| lamps) {
+        for sun in lights.suns.iter().filter(|_| lamps) {
             let light = sun.sample([u[0], u[1]], self.wavelengths);
             sum += self.contribution(receiver, &response, &light, |_| 1.0);
         }

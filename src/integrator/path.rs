@@ -350,7 +350,7 @@ impl Sample<'_> {
         branch.goes_on(u[3])
     }
 
-    /// The path meets nothing any more: it sees the sky, and the sun's disc on a purely specular chain.
+    /// The path meets nothing any more: it sees the sky, and the discs of suns on a purely specular chain.
     fn escape(&mut self, branch: &Branch) {
         if self.frame.endless[branch.medium.0 as usize] {
             return;
@@ -368,10 +368,8 @@ impl Sample<'_> {
         if self.sky_is_for_paths() || branch.arrival.counts_lights() {
             radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
         }
-        if let Some(sun) = &lights.sun
-            && branch.arrival.specular_from_eye
-        {
-            radiance += sun.radiance(branch.direction, self.wavelengths);
+        if branch.arrival.specular_from_eye {
+            radiance += lights.of_suns(branch.direction, self.wavelengths);
         }
         self.radiance += branch.throughput * radiance;
     }

@@ -1,4 +1,4 @@
-//! Where light comes from: the sky, the sun's disc, emitting triangles. Where the sun stands at a time and a place is
+//! Where light comes from: the sky, the discs of suns, emitting triangles. Where the sun stands at a time and a place is
 //! [`sun_position`].
 //!
 //! Each light is found by chance (a path that runs into it) and, where that pays, by next-event estimation; the
@@ -7,15 +7,16 @@
 //! * A constant sky is found by chance only: directions drawn from the surface or phase function are already right.
 //! * A picture of the sky is importance sampled, and so is a clear sky ([`clear_sky`]), which comes from the same sun and
 //!   air as the sun's beam ([`atmosphere`]).
-//! * The sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
-//!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out.
+//! * A sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
+//!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out. A vertex
+//!   looks for every sun, with the same random numbers.
 //! * Emitting triangles are sampled by area.
 //! * Beneath a refracting interface directions are drawn in which compact lights are likely to be seen ([`beneath`]).
 //!
-//! Where nobody looks for them, sky and sun are an ambient radiance from all around,
+//! Where nobody looks for them, sky and suns are an ambient radiance from all around,
 //!
 //! ```text
-//! L_ambient = (integral of L_sky over the sphere + E_sun) / (4 pi)
+//! L_ambient = (integral of L_sky over the sphere + sum of E over the suns) / (4 pi)
 //! ```
 
 pub mod area;
@@ -46,8 +47,8 @@ use crate::spectrum::{Lanes, Wavelengths};
 pub struct Lights {
     /// Light from infinity in all directions.
     pub environment: Environment,
-    /// The sun's disc.
-    pub sun: Option<Sun>,
+    /// The discs of suns, the one that lights a clear sky first.
+    pub suns: Vec<Sun>,
     /// Emitting triangles.
     pub area: Option<AreaLights>,
 }
@@ -70,13 +71,18 @@ pub struct LightSample {
 impl Lights {
     /// True when next-event estimation can find anything.
     pub fn are_sampled(&self) -> bool {
-        self.environment.is_sampled() || self.sun.is_some() || self.area.is_some()
+        self.environment.is_sampled() || !self.suns.is_empty() || self.area.is_some()
     }
 
-    /// Sky and sun spread over all directions; emitting triangles have no part in it.
+    /// Sky and suns spread over all directions; emitting triangles have no part in it.
     pub fn ambient(&self, wavelengths: &Wavelengths) -> Lanes {
-        let sun = self.sun.as_ref().map_or(Lanes::ZERO, |sun| sun.mean_radiance(wavelengths));
-        self.environment.mean_radiance(wavelengths) + sun
+        let suns = self.suns.iter().map(|sun| sun.mean_radiance(wavelengths)).sum::<Lanes>();
+        self.environment.mean_radiance(wavelengths) + suns
+    }
+
+    /// Radiance of the suns whose discs a direction meets.
+    pub fn of_suns(&self, direction: Vec3, wavelengths: &Wavelengths) -> Lanes {
+        self.suns.iter().map(|sun| sun.radiance(direction, wavelengths)).sum()
     }
 }
 

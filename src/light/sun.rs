@@ -1,4 +1,4 @@
-//! The sun: a disc of even radiance, infinitely far away.
+//! A sun: a disc of even radiance, infinitely far away.
 //!
 //! ```text
 //! L = E / (pi sin^2(alpha)),   alpha half the angular diameter, E on a plane perpendicular to the direction
@@ -13,7 +13,7 @@ use crate::spectrum::{LaneCurve, Lanes, Wavelengths};
 
 use super::LightSample;
 
-/// The sun's disc.
+/// The disc of a sun.
 #[derive(Clone, Debug)]
 pub struct Sun {
     frame: Frame,
@@ -67,6 +67,11 @@ impl Sun {
             radiance: self.disc_radiance(wavelengths),
             pdf_w: warp::cone_pdf_w(self.one_minus_cos),
         }
+    }
+
+    /// The greatest irradiance that a lane can have, which is zero only of a sun without light.
+    pub fn power(&self) -> f32 {
+        self.irradiance.maximum()
     }
 
     /// Its light spread over all directions.

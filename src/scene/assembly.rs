@@ -264,7 +264,7 @@ impl<'a> Assembly<'a> {
         self.parts.geometry.settle_motions();
         let lights = Lights {
             environment: world.environment.clone(),
-            sun: world.sun.clone(),
+            suns: world.suns.clone(),
             area: self.area_lights(),
         };
         let still = world.still.geometry.triangles.len();
@@ -407,7 +407,7 @@ impl<'a> Assembly<'a> {
             specular: self.parts.pairs.keys().any(|p| !p.matched)
                 || self.parts.surfaces.iter().any(|s| matches!(s, Surface::Conductor { .. })),
             turbid_air: !media[0].sigma_s.is_zero(),
-            lamps: lights.sun.is_some() || lights.area.is_some(),
+            lamps: !lights.suns.is_empty() || lights.area.is_some(),
             sky: lights.environment.is_sampled() || lights.environment.is_constant_light(),
             peaked_sky: lights.environment.is_peaked(),
             layers: false,
@@ -415,7 +415,7 @@ impl<'a> Assembly<'a> {
             half_spaces: false,
             motion: false,
             lens: false,
-            sun_behind_interface: lights.sun.is_some() && self.parts.pairs.keys().any(|p| !p.matched),
+            sun_behind_interface: !lights.suns.is_empty() && self.parts.pairs.keys().any(|p| !p.matched),
         }
     }
 

@@ -42,8 +42,8 @@ pub struct World {
     pub(super) reductions: Vec<Option<MediumReduction>>,
     /// The sky.
     pub environment: Environment,
-    /// The sun.
-    pub sun: Option<Sun>,
+    /// The suns.
+    pub suns: Vec<Sun>,
     /// Hashes of the files that every frame is made of: sky, grids and surfaces, in the order of the scene.
     pub contents: Vec<ContentHash>,
     /// The `[[surfaces]]` and `[[meshes]]` that are the same in every frame, those without a pattern, ready for rays.
@@ -79,10 +79,11 @@ impl World {
             medium.density = density::still(density, &description, origin, &mut inputs)?;
         }
         let environment = environment_of(&description, mode, &mut inputs)?;
-        let sun = description.sun.as_ref().map(|sun| {
+        let suns = description.suns.iter().map(|sun| {
             let irradiance = sun.irradiance.prepare(Role::Illuminant, mode);
             Sun::new(sun.direction, sun.angular_diameter, irradiance)
         });
+        let suns = suns.collect();
         let order = description.render.similarity as usize;
         let reductions = media.iter().map(|medium| MediumReduction::of(&medium.phase, order)).collect();
         let (still, contents) = (Parts::default(), Vec::new());
@@ -94,7 +95,7 @@ impl World {
             media,
             reductions,
             environment,
-            sun,
+            suns,
             contents,
             still,
             names,
@@ -221,7 +222,7 @@ fn lane_mode(description: &SceneDescription) -> LaneMode {
     let spectral = bends
         || description.media.values().any(medium_is_spectral)
         || description.surfaces.iter().any(|s| material_is_spectral(&s.material))
-        || description.sun.as_ref().is_some_and(|sun| sun.irradiance.is_spectral())
+        || description.suns.iter().any(|sun| sun.irradiance.is_spectral())
         || match &description.sky {
             SkyDescription::Constant(sky) => sky.is_spectral(),
             SkyDescription::Image { .. } => false,
@@ -333,7 +334,7 @@ fn environment_of(
     inputs: &mut Inputs,
 ) -> Result<Environment, FrameError> {
     let up = description.frames.as_ref().map_or(super::description::Axis::Z, |f| f.up).vector();
-    match (&description.sky, &description.sun) {
+    match (&description.sky, description.suns.first()) {
         (SkyDescription::Constant(radiance), _) => {
             Ok(Environment::Constant(radiance.prepare(Role::Illuminant, mode)))
         }

@@ -53,6 +53,28 @@ fn the_disc_is_as_bright_as_its_irradiance_says_directly_and_in_a_mirror() {
     }
 }
 
+/// Where discs lie one over the other, directly and in a mirror, their radiances add up; where one is alone, there is its own.
+#[test]
+fn discs_that_overlap_add_up() {
+    let mirror = parallelogram(DVec3::new(-9.0, -9.0, -1.0), DVec3::X * 18.0, DVec3::Y * 18.0);
+    let folder = SceneFolder::new().mesh("mirror.ply", &mirror);
+    let suns = format!("{}{}", sun(2.0), sun(8.0)).replace("[sun]", "[[sun]]");
+    for side in [1.0, -1.0] {
+        // Three degrees up from the middle of both.
+        let beside =
+            [0.8 - 0.6 * 3_f64.to_radians().tan(), 0.0, side * (0.6 + 0.8 * 3_f64.to_radians().tan())];
+        let both = disc_radiance(2.0) + disc_radiance(8.0);
+        for (target, expected) in [([0.8, 0.0, side * 0.6], both), (beside, disc_radiance(8.0))] {
+            let scene = folder.scene(&format!(
+                "[[surfaces]]\nmesh = \"mirror.ply\"\nmaterial = {{ kind = \"conductor\", eta = 1e-9, k = 1 }}\n\
+                 {suns}[camera]\neye = [0, 0, 0]\ntarget = {target:?}\nvertical_fov = 0.3\nresolution = [4, 4]\n"
+            ));
+            // As above.
+            assert_every_pixel(&format!("towards {target:?}"), &scene.render(4, 0), expected, 4e-6);
+        }
+    }
+}
+
 /// Its picture holds the irradiance: the edge is where the diameter says.
 #[test]
 fn the_picture_of_the_disc_integrates_to_the_irradiance() {

@@ -62,7 +62,7 @@ fn compare(name: &str, folder: &SceneFolder, text: &str, radius: f32, extrapolat
 }
 
 /// Waves of few triangles across each other.
-fn waves() -> TestMesh {
+pub fn waves() -> TestMesh {
     let cells = 40;
     let mut mesh = TestMesh { positions: Vec::new(), triangles: Vec::new() };
     for i in 0..=cells {

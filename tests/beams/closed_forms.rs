@@ -9,8 +9,14 @@ use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
 use crate::walled;
 
+const SUN: &str = "[[sun]]\ndirection = [0.6, 0, 0.8]\nangular_diameter = 0.53\nirradiance = [3, 2, 1]\n";
+
 /// Water of depth 1 over a floor of reflectance 0.5, the camera in it, the sky black; a vertex is lit and no more.
 fn pool(medium: &str, normals: &str) -> Prepared {
+    pool_under(SUN, medium, normals)
+}
+
+fn pool_under(suns: &str, medium: &str, normals: &str) -> Prepared {
     let sheet = |z: f64| parallelogram(DVec3::new(-6.0, -6.0, z), DVec3::X * 12.0, DVec3::Y * 12.0);
     let folder = SceneFolder::new().mesh("surface.ply", &sheet(1.0)).mesh("floor.ply", &sheet(0.0));
     let (folder, text) = walled(folder, 5.9, 1.1);
@@ -19,15 +25,18 @@ fn pool(medium: &str, normals: &str) -> Prepared {
          [[surfaces]]\nmesh = \"surface.ply\"\nfront = \"air\"\nback = \"water\"\nnormals = \"{normals}\"\n\
          material = {{ kind = \"dielectric\" }}\n\
          [[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 0.5 }}\n\
-         [sun]\ndirection = [0.6, 0, 0.8]\nangular_diameter = 0.53\nirradiance = [3, 2, 1]\n\
          [camera]\neye = [0, -0.3, 0.6]\ntarget = [0, 0, 0]\nvertical_fov = 60\nresolution = [16, 16]\n\
-         [render]\nintegrator = \"beams\"\nmax_depth = 2\n{text}"
+         [render]\nintegrator = \"beams\"\nmax_depth = 2\n{text}{suns}"
     ))
 }
 
 /// Cosines above and below the surface and what Fresnel lets in.
 fn refracted() -> (f64, f64, f64) {
-    let (n, cos_i) = (1.33_f64, 0.8_f64);
+    refracted_at(0.8)
+}
+
+fn refracted_at(cos_i: f64) -> (f64, f64, f64) {
+    let n = 1.33_f64;
     let cos_t = (1.0 - (1.0 - cos_i * cos_i) / (n * n)).sqrt();
     let s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
     let p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
@@ -72,6 +81,23 @@ fn the_sun_on_a_floor_under_flat_water() {
         (-sigma / cos_t).exp() * ways.iter().map(|d| (-sigma * d).exp()).sum::<f64>() / ways.len() as f64
     };
     assert_close("absorbing", &scene, light * DVec3::new(dimmed(1.0), dimmed(0.3), 1.0), 64);
+}
+
+/// Each of two suns falls on the floor as it would alone, dimmed along its own way.
+#[test]
+fn two_suns_on_a_floor_under_flat_water() {
+    let other = "[[sun]]\ndirection = [0, -0.8, 0.6]\nangular_diameter = 0.2\nirradiance = [1, 2, 6]\n";
+    let scene = pool_under(&format!("{SUN}{other}"), "absorption = [1, 0.3, 0]", "flat");
+    let ways = eye_ways(&scene);
+    let on_floor = |cos: f64, irradiance: DVec3| {
+        let (cos_i, cos_t, passes) = refracted_at(cos);
+        let dimmed = DVec3::new(1.0, 0.3, 0.0).map(|sigma| (-sigma / cos_t).exp());
+        irradiance * dimmed * (0.5 / PI * cos_i * passes)
+    };
+    let light = on_floor(0.8, DVec3::new(3.0, 2.0, 1.0)) + on_floor(0.6, DVec3::new(1.0, 2.0, 6.0));
+    let left = DVec3::new(1.0, 0.3, 0.0)
+        .map(|sigma| ways.iter().map(|d| (-sigma * d).exp()).sum::<f64>() / ways.len() as f64);
+    assert_close("two suns", &scene, light * left, 64);
 }
 
 /// Sunlight scattered once in the water on its way to the eye: with sigma_t along both ways, the integral over the eye's

@@ -18,6 +18,7 @@ mod motion;
 #[path = "../photons/seeds.rs"]
 mod seeds;
 mod strays;
+mod suns;
 mod wave;
 
 /// Adds four black walls at a distance from the middle, which keep paths from leaving between the surface and the floor.

@@ -53,6 +53,26 @@ fn info_prints_where_the_sun_stands_and_the_light_of_sun_and_sky() {
     for words in ["elevation 60.00, azimuth 200.50 degrees, 91", "sky       16", "exposure  -5.6 stops"] {
         assert!(info.contains(words), "no `{words}` in {info}");
     }
+    assert!(!info.contains("suns"), "{info}");
+}
+
+#[test]
+fn info_tells_how_many_suns_there_are_and_the_light_of_each() {
+    let folder = Folder::new();
+    let sun = |elevation: u32, lux: u32| {
+        format!(
+            "[[sun]]\nelevation = {elevation}\nazimuth = 90\nirradiance = {{ blackbody = 5778, illuminance = {lux} }}\n"
+        )
+    };
+    folder.write("scene.toml", sun(30, 1000) + &sun(90, 200));
+    let info = floe(&folder, &["info", "scene.toml"]).ended(0).stdout;
+    for words in [
+        "suns      2, 1200 lx, 700 on level ground",
+        "sun       elevation 30.00, azimuth 90.00 degrees, 1000 lx, 500 on",
+        "degrees, 200 lx, 200 on",
+    ] {
+        assert!(info.contains(words), "no `{words}` in {info}");
+    }
 }
 
 #[cfg(unix)]

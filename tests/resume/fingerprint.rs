@@ -10,7 +10,8 @@ fn folder() -> Folder {
     let folder = Folder::with_scene(&scene(
         "[media.ice]\ndensity = { grid = \"plume_####.nrrd\", box = [[-1, -1, -1], [1, 1, 1]] }\nscattering = 2\n\
          [[surfaces]]\nmesh = \"floor.ply\"\nmaterial = { kind = \"diffuse\" }\n\
-         [[surfaces]]\nmesh = \"lamp_####.ply\"\nmaterial = { kind = \"emitter\", radiance = 1 }\n",
+         [[surfaces]]\nmesh = \"lamp_####.ply\"\nmaterial = { kind = \"emitter\", radiance = 1 }\n\
+         [[sun]]\ndirection = [0, 0, 1]\nirradiance = 1\n[[sun]]\ndirection = [0, 1, 1]\nirradiance = 2\n",
     ));
     for number in 1..=2 {
         folder.frame(number, &labelled(cube(), 0, 1));
@@ -61,6 +62,7 @@ fn what_changes_pixels_changes_the_fingerprint() {
         ("eye = [0.4, -4, 0.9]", "eye = [0.4, -4, 0.8]"),
         ("1 = \"water\"", "1 = \"ice\""),
         ("radiance = 1 }", "radiance = 2 }"),
+        ("irradiance = 2", "irradiance = 3"),
         ("[render]", "[output]\naovs = [\"Z\"]\n[render]"),
         ("frame_####.ply\"", "frame_####.ply\"\nfps = 25"),
     ] {

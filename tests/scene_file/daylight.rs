@@ -4,13 +4,13 @@ use floe::light::ClearAir;
 use floe::scene::description::{Axis, Daylight, SkyDescription};
 use floe::spectrum::Spectrum;
 
-use crate::{Wrong, assert_wrong, example};
+use crate::{Wrong, assert_wrong, example, parse};
 
 #[test]
 fn the_sun_is_where_its_place_says_and_the_sky_goes_with_it() {
     let scene = example("clear sky");
     assert_eq!(scene.sky, SkyDescription::Clear(ClearAir { turbidity: 2.5, ground_albedo: 0.3 }));
-    let sun = scene.sun.unwrap();
+    let sun = &scene.suns[0];
     let [elevation, azimuth] = sun.angles(Axis::Z);
     // Unit vectors in single precision: 6e-8 of a radian and its double.
     assert!((elevation - 35.5).abs() < 1e-5 && (azimuth - 240.0).abs() < 1e-5, "{elevation} {azimuth}");
@@ -21,12 +21,12 @@ fn the_sun_is_where_its_place_says_and_the_sky_goes_with_it() {
 
     let scene = example("summer afternoon");
     assert_eq!(scene.sky, SkyDescription::Clear(ClearAir { turbidity: 3.0, ground_albedo: 0.1 }));
-    let sun = scene.sun.unwrap();
+    let sun = &scene.suns[0];
     let [elevation, azimuth] = sun.angles(Axis::Z);
     // Copenhagen at 12:30 UTC; pysolar 0.13 has 54.65 and 212.21 degrees.
     assert!((elevation - 54.65).abs() < 0.05 && (azimuth - 212.21).abs() < 0.05, "{elevation} {azimuth}");
     // A white card in the sun is shown as white: 1 is 683 pi lx.
-    let daylight = Daylight::new(Some(&sun), &scene.sky, Axis::Z);
+    let daylight = Daylight::new(&scene.suns, &scene.sky, Axis::Z);
     assert_eq!(scene.output.exposure, daylight.exposure());
     let card = daylight.sun + daylight.sky_level.unwrap();
     assert!(
@@ -35,8 +35,29 @@ fn the_sun_is_where_its_place_says_and_the_sky_goes_with_it() {
     );
 
     let scene = example("measured sun");
-    let Spectrum::Table { wavelengths, values } = scene.sun.unwrap().irradiance else { panic!("no table") };
+    let Spectrum::Table { wavelengths, values } = &scene.suns[0].irradiance else { panic!("no table") };
     assert_eq!((wavelengths[34], values[34], scene.output.exposure), (550.0, 0.5 * 1.3657, 0.0));
+}
+
+/// The sky and its sun's light are those of the first; what others have they say, and they may stand below the horizon.
+#[test]
+fn suns_are_read_in_order_and_the_first_lights_the_sky() {
+    let alone = "[sun]\nelevation = 4\nazimuth = 280\n[sky]\nradiance = { model = \"hosek-wilkie\" }";
+    let alone = parse(alone).unwrap();
+    let scene = example("sun and moon");
+    assert_eq!((scene.suns.len(), &scene.suns[0]), (3, &alone.suns[0]));
+    assert_eq!((scene.suns[1].angular_diameter, scene.suns[2].angular_diameter), (0.52, 0.53));
+    assert_eq!(scene.suns[2].irradiance, Spectrum::Constant(0.1));
+    let up = Axis::Z;
+    let [all, first] = [&scene.suns, &alone.suns].map(|suns| Daylight::new(suns, &scene.sky, up));
+    let others = Daylight::new(&scene.suns[1..], &SkyDescription::default(), up);
+    assert_eq!(all.sky_level, first.sky_level);
+    // Sums of a few numbers in double precision.
+    assert!((all.sun / (first.sun + others.sun) - 1.0).abs() < 1e-12);
+    assert!((all.sun_level / (first.sun_level + others.sun_level) - 1.0).abs() < 1e-12);
+    let moon = Daylight::new(&scene.suns[1..2], &SkyDescription::default(), up);
+    assert_eq!(moon.sun_level, others.sun_level, "what is below the horizon lights no level ground");
+    assert!(parse("sun = []").unwrap().suns.is_empty());
 }
 
 /// What is wrong with suns and clear skies.
@@ -90,6 +111,21 @@ const WRONG: &[Wrong] = &[
     ("[sky]\nradiance = { model = 'hosek-wilkie' }", 2, 12, "the light of this sky comes from the sun: add [sun] with"),
     ("[sky]\nradiance = { model = 'hosek-wilkie' }\n[sun]\ndirection = [1, 0, -0.1]", 3, 1,
      "the sun is 5.71 degrees below the horizon, and the sky's model is of the day"),
+    ("sun = 3", 1, 7, "sun: 3: write a table [sun], or several with the heading [[sun]]"),
+    ("sun = [3]", 1, 8, "sun[0]: 3: write a table [sun], or several with the heading [[sun]]"),
+    ("[[sun]]\ndirection = [0, 0, 1]\nirradiance = 1\n[[sun]]\nirradiance = 1", 4, 1, "sun[1] has no `direction`"),
+    ("[[sun]]\ndirection = [0, 0, 1]\nirradiance = 1\n[[sun]]\ndirection = [0, 0, 0]\nirradiance = 1", 5, 13,
+     "sun[1].direction: [0, 0, 0]: write a direction that is not zero"),
+    ("[[sun]]\ndirection = [0, 0, 1]\nirradiance = 1\n[[sun]]\ndirecton = [0, 0, 1]", 5, 1,
+     "unknown key `directon` in sun[1]; did you mean `direction`?"),
+    ("[[sun]]\ndirection = [0, 0, 1]\nirradiance = { illuminance = 9 }", 3, 14, "sun[0].irradiance has no `blackbody`"),
+    ("[[sun]]\ndirection = [0, 0, 1]\n[[sun]]\ndirection = [1, 0, 1]\n[sky]\nradiance = { model = 'hosek-wilkie' }", 3, 1,
+     "sun[1] has no `irradiance`: write for example [1.0, 0.95, 0.85] or { table = \"astm-g173\" }; the model of a clear sky in \
+      [sky] has that of the first sun alone"),
+    ("[[sun]]\ndirection = [1, 0, -0.1]\n[[sun]]\ndirection = [0, 0, 1]\n[sky]\nradiance = { model = 'hosek-wilkie' }", 1, 1,
+     "the sun is 5.71 degrees below the horizon, and the sky's model is of the day"),
+    ("sun = []\n[sky]\nradiance = { model = 'hosek-wilkie' }", 3, 12, "the light of this sky comes from the sun: add [sun] with"),
+    ("[sun]\ndirection = [0, 0, 1]\nirradiance = 1\n[[sun]]\ndirection = [0, 1, 1]\nirradiance = 1", 4, 3, "duplicate key"),
 ];
 
 #[test]

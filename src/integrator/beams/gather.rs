@@ -1,4 +1,4 @@
-//! The triangles of a frame that bend light of the sun, and where they can send it.
+//! The triangles of a frame that bend light of its suns, and where they can send it.
 //!
 //! A triangle that is long, or whose normals turn much, lights a thin strip across a wide box. It is cut into halves, each
 //! with a box of its own, as long as these cover much less.
@@ -12,7 +12,7 @@ use super::piece::Piece;
 use super::shade::Shade;
 use super::sieve::Sieve;
 use super::spread::{Fan, Slopes, angle, slope_about};
-use super::{Beam, Beams};
+use super::{Beam, Beams, SunBeams};
 use crate::geometry::triangle::scaled_normal;
 use crate::light::Sun;
 use crate::optics::medium::Medium;
@@ -35,7 +35,19 @@ const STEPS: u32 = 16;
 impl Beams {
     /// Those of a frame; `None` without any.
     pub fn new(frame: &Frame) -> Option<Self> {
-        let sun = frame.lights.sun.as_ref()?;
+        let of_suns: Vec<SunBeams> = frame.lights.suns.iter().map(|sun| SunBeams::new(frame, sun)).collect();
+        let mut reached = vec![false; frame.media.len()];
+        for beam in of_suns.iter().flat_map(|own| &own.beams) {
+            if let Surface::Interface(pair) = frame.surface(beam.triangle) {
+                reached[pair.crossed(beam.front).1.0 as usize] = true;
+            }
+        }
+        Some(Self { of_suns, reached }).filter(|beams| !beams.is_empty())
+    }
+}
+
+impl SunBeams {
+    fn new(frame: &Frame, sun: &Sun) -> Self {
         let depth = 0.5 * frame.accel.bounds().size().max_element();
         let gatherer = Gatherer::new(frame, sun, depth);
         let (beams, (reaches, sieves)): (Vec<Beam>, (Vec<Reach>, Vec<Sieve>)) =
@@ -43,23 +55,10 @@ impl Beams {
                 .into_par_iter()
                 .flat_map_iter(|triangle| gatherer.beams(triangle))
                 .unzip();
-        let mut reached = vec![false; frame.media.len()];
-        for beam in &beams {
-            if let Surface::Interface(pair) = frame.surface(beam.triangle) {
-                reached[pair.crossed(beam.front).1.0 as usize] = true;
-            }
-        }
         let (index, order) = Index::new(&reaches, depth);
         let sieves = order.iter().map(|number| sieves[*number as usize]).collect();
-        let beams: Vec<Beam> = order.into_iter().map(|number| beams[number as usize]).collect();
-        (!beams.is_empty()).then_some(Self {
-            sun: gatherer.sun,
-            shear: gatherer.shear,
-            beams,
-            sieves,
-            index,
-            reached,
-        })
+        let beams = order.into_iter().map(|number| beams[number as usize]).collect();
+        Self { sun: gatherer.sun, shear: gatherer.shear, beams, sieves, index }
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the sun brings to a vertex through the triangles that bend it there.
+//! What suns bring to a vertex through the triangles that bend them there.
 
 use glam::{DVec3, Vec3};
 
@@ -11,9 +11,10 @@ use super::super::roulette::chance_of_a_look;
 use super::index::sheared;
 use super::patch::{Aim, Patch};
 use super::roots::{self, Root};
-use super::{Beam, Beams};
+use super::{Beam, Beams, SunBeams};
 use crate::accel::{Hit, Ignored};
 use crate::geometry::Ray;
+use crate::light::Sun;
 use crate::scene::surface::Surface;
 use crate::spectrum::Lanes;
 
@@ -36,22 +37,38 @@ impl<'a> Sample<'a> {
         self.beams.filter(|beams| has_room && beams.reach(receiver.medium))
     }
 
-    /// Light of a point of the disc, drawn with `u`, through all triangles, or now and then where that matters little;
+    /// Light of a point of each disc, drawn with `u`, through all triangles, or now and then where that matters little;
     /// `response` is as in [`Sample::direct`].
-    pub(in crate::integrator) fn sun_through(
+    pub(in crate::integrator) fn suns_through(
         &mut self,
         beams: &Beams,
         receiver: &Receiver,
         response: &impl Fn(Vec3) -> (Lanes, f32),
         u: [f32; 4],
     ) -> Lanes {
-        let frame = self.frame;
-        let Some(sun) = &frame.lights.sun else { return Lanes::ZERO };
         let survival = chance_of_a_look(receiver.weight);
         if u[2] >= survival {
             return Lanes::ZERO;
         }
-        let light = sun.sample([u[0], u[1]], self.wavelengths);
+        let mut sum = Lanes::ZERO;
+        for (sun, own) in self.frame.lights.suns.iter().zip(&beams.of_suns) {
+            sum += self.sun_through(sun, own, receiver, response, [u[0], u[1]]);
+        }
+        sum / survival
+    }
+
+    fn sun_through(
+        &mut self,
+        sun: &Sun,
+        beams: &SunBeams,
+        receiver: &Receiver,
+        response: &impl Fn(Vec3) -> (Lanes, f32),
+        u: [f32; 2],
+    ) -> Lanes {
+        if beams.beams.is_empty() {
+            return Lanes::ZERO;
+        }
+        let light = sun.sample(u, self.wavelengths);
         let local = beams.sun.local(light.wi).normalize();
         let at = beams.sun.local(receiver.position);
         let shine = Shine { to_sun: light.wi, local, power: light.radiance / light.pdf_w, x: at };
@@ -66,12 +83,12 @@ impl<'a> Sample<'a> {
             }
         }
         self.scratch.candidates = candidates;
-        sum / survival
+        sum
     }
 
     fn sun_through_one(
         &mut self,
-        beams: &Beams,
+        beams: &SunBeams,
         beam: &Beam,
         receiver: &Receiver,
         response: &impl Fn(Vec3) -> (Lanes, f32),
@@ -114,7 +131,7 @@ impl<'a> Sample<'a> {
     #[expect(clippy::too_many_arguments, reason = "the two ends of the ray and what is between")]
     fn sun_along(
         &mut self,
-        beams: &Beams,
+        beams: &SunBeams,
         (beam, v): (&Beam, &[Vec3; 3]),
         aim: &Aim,
         root: &Root,

@@ -1,4 +1,4 @@
-//! Path tracing in which the sun is found through one refracting interface, whichever way it is bent there.
+//! Path tracing in which suns are found through one refracting interface, whichever way they are bent there.
 //!
 //! A path that turns at a point x behind an interface would have to run into a disc of half a degree by chance. Instead a
 //! direction w to the disc is drawn at x, and all triangles of interfaces through which its light is bent to x are found. Each
@@ -29,6 +29,8 @@
 //! Light that is bent twice or reflected on its way, as that through meshes that overlap others, is that of photons
 //! ([`super::strays`]). A path that sees the disc through interfaces alone has it as before, and one that was lit never sees
 //! it: nothing counts twice.
+//!
+//! Each sun has beams of its own, in a frame of its own, and a vertex looks for all of them with the same random numbers.
 
 mod gather;
 mod index;
@@ -48,9 +50,18 @@ use patch::SunFrame;
 use piece::Piece;
 use sieve::Sieve;
 
-/// The triangles that bend light of the sun, and where they can send it.
+/// The triangles that bend light of suns, and where they can send it.
 #[derive(Clone, Debug)]
 pub struct Beams {
+    /// Those of each, in the order of the frame's.
+    of_suns: Vec<SunBeams>,
+    /// Media that any of these reach, by [`MediumId`]. What photons leave to beams hangs on it too.
+    reached: Vec<bool>,
+}
+
+/// Those that bend light of one sun.
+#[derive(Clone, Debug)]
+struct SunBeams {
     sun: SunFrame,
     /// The mean slope of all rays, which the index leaves out.
     shear: DVec2,
@@ -58,8 +69,6 @@ pub struct Beams {
     /// A first look at each.
     sieves: Vec<Sieve>,
     index: Index,
-    /// Media that these reach, by [`MediumId`].
-    reached: Vec<bool>,
 }
 
 /// A triangle, or a part of one, that bends light about its interpolated normals, or about its own.
@@ -82,16 +91,22 @@ impl Beams {
     /// Triangles, or pieces of them, through which light is looked for; those whose own normal may be taken for the
     /// interpolated one twice.
     pub fn len(&self) -> usize {
-        self.beams.len()
+        self.of_suns.iter().map(|own| own.beams.len()).sum()
     }
 
     /// True without triangles.
     pub fn is_empty(&self) -> bool {
-        self.beams.is_empty()
+        self.of_suns.iter().all(|own| own.beams.is_empty())
     }
 
     /// Bytes that they occupy.
     pub fn bytes(&self) -> usize {
+        self.of_suns.iter().map(SunBeams::bytes).sum()
+    }
+}
+
+impl SunBeams {
+    fn bytes(&self) -> usize {
         size_of_val(&*self.beams) + size_of_val(&*self.sieves) + self.index.bytes()
     }
 }

@@ -1,9 +1,9 @@
 //! Where photons start.
 //!
 //! ```text
-//! flux = L cos / (n pdf_a pdf_w)       over n photons of one kind of light
+//! flux = L cos / (n pdf_a pdf_w)       over n photons of one kind of light; p_i n of them are of sun i
 //! ```
-//! * The sun and the sky: a direction from the light's own density, and a point on a disc perpendicular to it that covers
+//! * Suns and the sky: a direction from the light's own density, and a point on a disc perpendicular to it that covers
 //!   the scene. Where the scene reaches much farther than what the eye sees, points lie log-uniformly around that, so that
 //!   each octave of distance gets as many; those farther out are spread as much wider as their neighbours are farther away.
 //! * Emitting triangles: a point by power, and a direction in the cone around the sphere of all that does not emit; by the
@@ -18,12 +18,12 @@ use std::borrow::Cow;
 
 use glam::Vec3;
 
+use super::suns::SunStarts;
 use crate::accel::Ignored;
 use crate::geometry::elementary::{exp, ln};
 use crate::geometry::{Bounds, Frame as Basis, Ray};
 use crate::light::LightSample;
 use crate::optics::medium::MediumId;
-use crate::sampling::distribution::Distribution2d;
 use crate::sampling::{SampleStream, warp};
 use crate::scene::frame::{Frame, Place};
 use crate::scene::layers::Insides;
@@ -40,7 +40,7 @@ struct Ball {
 /// A kind of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    Sun,
+    Suns,
     Sky,
     Area,
 }
@@ -55,8 +55,8 @@ pub(in crate::integrator) struct Emission {
     seen: Ball,
     /// What is before each emitting triangle, by its entry among the lights; `None` where an interface crosses it.
     starts: Vec<Option<Place>>,
-    /// Where on the disc across the light of the sun photons start; evenly unless something is known.
-    worth: Option<Distribution2d>,
+    /// None where there are no suns.
+    suns: Option<SunStarts>,
 }
 
 /// The start of a photon.
@@ -79,22 +79,23 @@ impl Emission {
     /// `sky` says whether the sky is among the lights that emit photons.
     pub(super) fn new(frame: &Frame, sky: bool) -> Self {
         let lights = &frame.lights;
+        let suns = SunStarts::by_power(&lights.suns);
         let kinds = [
-            lights.sun.as_ref().map(|_| Kind::Sun),
+            suns.as_ref().map(|_| Kind::Suns),
             sky.then_some(Kind::Sky),
             lights.area.as_ref().map(|_| Kind::Area),
         ];
         let scene = scene_ball(frame);
         let starts = starts(frame, 0.0);
         let kinds = kinds.into_iter().flatten().collect();
-        Self { kinds, scene, seen: seen_ball(frame, scene), starts, worth: None }
+        Self { kinds, scene, seen: seen_ball(frame, scene), starts, suns }
     }
 
-    /// That of the sun alone, whose points on the disc are drawn with a density over the unit square.
-    pub(in crate::integrator) fn of_sun(frame: &Frame, worth: Option<Distribution2d>) -> Self {
+    /// That of the suns alone.
+    pub(in crate::integrator) fn of_suns(frame: &Frame, suns: Option<SunStarts>) -> Self {
         let scene = scene_ball(frame);
-        let kinds = frame.lights.sun.iter().map(|_| Kind::Sun).collect();
-        Self { kinds, scene, seen: seen_ball(frame, scene), starts: Vec::new(), worth }
+        let kinds = suns.iter().map(|_| Kind::Suns).collect();
+        Self { kinds, scene, seen: seen_ball(frame, scene), starts: Vec::new(), suns }
     }
 
     /// The same at another time, where something moves; `count` photons will be emitted then.
@@ -136,11 +137,11 @@ impl Emission {
         let of_kind = (count - index % kinds).div_ceil(kinds) as f32;
         let u = stream.next4();
         let mut emitted = match kind {
-            Kind::Sun => {
-                let mut light = frame.lights.sun.as_ref()?.sample([u[0], u[1]], wavelengths);
-                let (place, density) = self.place_across([u[2], u[3]]);
-                light.radiance /= density;
-                self.start_at_infinity(frame, &light, place, (wavelengths, time))
+            Kind::Suns => {
+                let start = self.suns.as_ref()?.sample([u[2], u[3]]);
+                let mut light = frame.lights.suns[start.sun].sample([u[0], u[1]], wavelengths);
+                light.radiance /= start.density;
+                self.start_at_infinity(frame, &light, start.place, (wavelengths, time))
             }
             Kind::Sky => {
                 let light = frame.lights.environment.emit([u[0], u[1]], wavelengths)?;
@@ -150,11 +151,6 @@ impl Emission {
         }?;
         emitted.flux /= of_kind;
         (emitted.flux.max_element() > 0.0).then_some(emitted)
-    }
-
-    /// Two numbers for a point on the disc across the light of the sun, and their density over the unit square.
-    pub(in crate::integrator) fn place_across(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        self.worth.as_ref().map_or((u, 1.0), |worth| worth.sample(u))
     }
 
     fn start_at_infinity(

@@ -5,7 +5,7 @@
 //!
 //! | light | found by |
 //! |---|---|
-//! | of photon lights (sun, emitters, mostly the sky): seen through specular surfaces only | eye paths |
+//! | of photon lights (suns, emitters, mostly the sky): seen through specular surfaces only | eye paths |
 //! | straight onto a diffuse surface | next-event estimation |
 //! | turned by specular surfaces and the peaks of phase functions, then onto a diffuse surface | caustic photons |
 //! | scattered before, onto the first diffuse surface of an eye path | final gathering, or global photons |
@@ -29,6 +29,7 @@ pub mod map;
 pub(super) mod peak;
 pub mod radius;
 mod stray;
+mod suns;
 mod trace;
 
 pub use map::{Photon, PhotonMap};
@@ -40,6 +41,7 @@ pub(super) use guide::Guide;
 pub(super) use peak::is_peak;
 pub(super) use radius::holding;
 pub(super) use stray::Strays;
+pub(super) use suns::SunStarts;
 pub(super) use trace::{Arrivals, Tracing};
 
 use peak::has_peak;

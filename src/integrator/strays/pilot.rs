@@ -3,15 +3,14 @@
 use rayon::prelude::*;
 
 use super::StrayFrame;
-use crate::integrator::photon::{Emission, Photon, Radii, common_of_pass, holding};
+use crate::integrator::photon::{Emission, Photon, Radii, SunStarts, common_of_pass, holding};
 use crate::integrator::{Counters, Scratch};
-use crate::sampling::distribution::Distribution2d;
 use crate::scene::frame::Frame;
 use crate::spectrum::Lanes;
 
-/// Cells along each edge of the unit square.
+/// Cells along each edge of the unit square of a sun.
 const CELLS: usize = 32;
-/// Photons that tell what the cells bring: sixteen in each.
+/// Photons that tell what the cells of a sun bring: sixteen in each.
 const PILOT: u32 = 16_384;
 /// The part of the photons that is drawn evenly.
 const EVEN: f64 = 0.2;
@@ -24,8 +23,8 @@ const OF_RADII: u32 = 65_536;
 impl StrayFrame<'_> {
     /// The same with photons where they are worth it, and radii; `None` where none bring anything.
     pub(super) fn guided(mut self, frame: &Frame) -> Option<Self> {
-        let worth = self.worth_of_cells(frame)?;
-        self.emission = Emission::of_sun(frame, Some(worth));
+        let worth = SunStarts::by_worth(&self.worth_of_cells(frame)?, CELLS)?;
+        self.emission = Emission::of_suns(frame, Some(worth));
         let count = self.count.min(OF_RADII);
         let pilot = self.trace(frame, 0, count, &|| false);
         // Photons of one pilot stand for so many photons of a pass.
@@ -41,24 +40,28 @@ impl StrayFrame<'_> {
         Some(self)
     }
 
-    fn worth_of_cells(&self, frame: &Frame) -> Option<Distribution2d> {
+    /// Sun by sun, and row by row; `None` where none is worth anything.
+    fn worth_of_cells(&self, frame: &Frame) -> Option<Vec<f64>> {
         let (wavelengths, time) = common_of_pass(frame, self.seed, 0);
-        let tracing = self.tracing(frame, (&wavelengths, time), PILOT);
+        let suns = frame.lights.suns.len();
+        let pilot = PILOT * suns as u32;
+        let tracing = self.tracing(frame, (&wavelengths, time), pilot);
         let stream = self.stream(0);
-        let left_by: Vec<(usize, f64)> = (0..PILOT)
+        let left_by: Vec<(usize, f64)> = (0..pilot)
             .into_par_iter()
             .map_init(Scratch::default, |scratch, index| {
                 scratch.counters = Counters::default();
                 scratch.start(frame, &wavelengths, Lanes::ZERO);
                 let [.., x, y] = stream(index).next4();
-                let [x, y] = [x, y].map(|u| (u * CELLS as f32) as usize);
+                // The squares of the suns lie one beyond the other along y.
+                let [x, y] = [x, y * suns as f32].map(|u| (u * CELLS as f32) as usize);
                 let mut walk = tracing.walk(scratch);
                 walk.emit(index, stream(index));
                 let left = walk.arrivals.caustic.iter().chain(&walk.arrivals.volume);
                 (y * CELLS + x, left.map(|photon| f64::from(photon.flux.element_sum())).sum())
             })
             .collect();
-        let mut cells = vec![0.0; CELLS * CELLS];
+        let mut cells = vec![0.0; suns * CELLS * CELLS];
         for (cell, flux) in left_by {
             cells[cell] += flux * flux;
         }
@@ -67,7 +70,6 @@ impl StrayFrame<'_> {
         if mean <= 0.0 {
             return None;
         }
-        let worth = cells.iter().map(|w| EVEN * mean + (1.0 - EVEN) * w).collect::<Vec<_>>();
-        Distribution2d::new(CELLS, &worth)
+        Some(cells.iter().map(|w| EVEN * mean + (1.0 - EVEN) * w).collect())
     }
 }

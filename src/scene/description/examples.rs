@@ -10,7 +10,7 @@ pub struct Example {
 }
 
 /// Scene files that are right. Together they use every key and every form of value.
-pub const EXAMPLES: [Example; 14] = [
+pub const EXAMPLES: [Example; 15] = [
     Example { name: "empty", text: "" },
     Example { name: "sea and ice", text: SEA_AND_ICE },
     Example { name: "spectral", text: SPECTRAL },
@@ -25,6 +25,7 @@ pub const EXAMPLES: [Example; 14] = [
     Example { name: "clear sky", text: CLEAR_SKY },
     Example { name: "summer afternoon", text: SUMMER_AFTERNOON },
     Example { name: "measured sun", text: MEASURED_SUN },
+    Example { name: "sun and moon", text: SUN_AND_MOON },
 ];
 
 const SEA_AND_ICE: &str = r#"
@@ -413,4 +414,23 @@ latitude = 40
 longitude = -105.25
 north = [0, 1, 1]
 irradiance = { table = "astm-g173", scale = 0.5 }
+"#;
+
+const SUN_AND_MOON: &str = r#"
+[[sun]]
+elevation = 4
+azimuth = 280
+
+[[sun]]
+direction = [0.5, 0.2, 0.4]
+angular_diameter = 0.52
+irradiance = { blackbody = 4100, illuminance = 0.2 }
+
+[[sun]]
+elevation = -10
+azimuth = 90
+irradiance = 0.1
+
+[sky]
+radiance = { model = "hosek-wilkie" }
 "#;

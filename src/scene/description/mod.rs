@@ -76,8 +76,8 @@ pub struct SceneDescription {
     pub media: BTreeMap<String, MediumDescription>,
     /// Meshes that the simulator did not write.
     pub surfaces: Vec<SurfaceDescription>,
-    /// The sun's disc.
-    pub sun: Option<SunDescription>,
+    /// The discs of suns, the one that lights a clear sky first.
+    pub suns: Vec<SunDescription>,
     /// Light from everywhere else.
     pub sky: SkyDescription,
     /// The camera.
@@ -303,7 +303,7 @@ pub enum MaterialDescription {
     },
 }
 
-/// `[sun]`
+/// `[sun]`, or one of several `[[sun]]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunDescription {
     /// Unit vector towards the sun.
@@ -326,7 +326,7 @@ pub enum SkyDescription {
         /// The file, relative to the scene file.
         image: String,
     },
-    /// A clear sky by day, whose light comes from the scene's sun: `{ model = "hosek-wilkie" }`.
+    /// A clear sky by day, whose light comes from the scene's first sun: `{ model = "hosek-wilkie" }`.
     Clear(ClearAir),
 }
 

@@ -73,9 +73,11 @@ fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneEr
     let around = meshes::Around { frames: frames.as_ref(), regions: &regions, media: &media };
     let meshes = meshes.map_or_else(|| Ok(Vec::new()), |tables| meshes::read(&tables, &around))?;
     let up = frames.as_ref().map_or(Axis::Z, |frames| frames.up);
-    let sky = sky.map_or_else(|| Ok(SkyDescription::default()), |table| sky::read(&table, sun.is_some()))?;
-    let sun = sun.map(|table| sun::read(&table, up, &sky)).transpose()?;
-    let by_default = by_default(&sky, sun.as_ref(), up);
+    let suns = sun.map_or_else(|| Ok(Vec::new()), |tables| sun::tables(tables))?;
+    let sky =
+        sky.map_or_else(|| Ok(SkyDescription::default()), |table| sky::read(&table, !suns.is_empty()))?;
+    let suns = sun::read(&suns, up, &sky)?;
+    let by_default = by_default(&sky, &suns, up);
     Ok(SceneDescription {
         file: source.file.to_owned(),
         directory: directory(source.file).to_owned(),
@@ -83,7 +85,7 @@ fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneEr
         regions,
         domain: domain.map(|table| domain::read(&table)).transpose()?,
         surfaces: surfaces.map_or_else(|| Ok(Vec::new()), |table| surfaces::read(&table, &media))?,
-        sun,
+        suns,
         sky,
         camera: camera::read(camera.as_ref(), up)?,
         render: render.map_or_else(|| Ok(Default::default()), |table| render::read(&table))?,
@@ -97,9 +99,9 @@ fn read(source: Source<'_>, root: Table<'_>) -> Result<SceneDescription, SceneEr
 }
 
 /// `[output]` where it says nothing: pictures under a clear sky, whose radiances are absolute, are exposed for it.
-fn by_default(sky: &SkyDescription, sun: Option<&SunDescription>, up: Axis) -> OutputDescription {
+fn by_default(sky: &SkyDescription, suns: &[SunDescription], up: Axis) -> OutputDescription {
     let exposure = match sky {
-        SkyDescription::Clear(_) => Daylight::new(sun, sky, up).exposure(),
+        SkyDescription::Clear(_) => Daylight::new(suns, sky, up).exposure(),
         _ => 0.0,
     };
     OutputDescription { exposure, ..OutputDescription::default() }

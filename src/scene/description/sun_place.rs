@@ -79,7 +79,7 @@ fn of_time(table: &Table<'_>, date: &Value<'_>) -> Result<SunPosition, SceneErro
     );
     if position.elevation < 0.0 {
         return Err(time.invalid(format!(
-            "the sun is {:.2} degrees below the horizon then: write a time of the day, or leave out [sun]",
+            "the sun is {:.2} degrees below the horizon then: write a time of the day, or leave this sun out",
             -position.elevation
         )));
     }
