@@ -51,10 +51,7 @@ impl Sample<'_> {
         let frame = self.frame;
         let mut sum = match self.beams_to(receiver) {
             None => Lanes::ZERO,
-            Some(beams) => {
-                let v = stream.next4();
-                self.suns_through(beams, receiver, &response, v)
-            }
+            Some(beams) => self.suns_through(beams, receiver, &response, stream),
         };
         if let Some(beneath) = self.looks_beneath(receiver.medium, receiver.interactions) {
             return sum + self.beneath(beneath, receiver, response, [u[0], u[1]]);

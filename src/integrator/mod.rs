@@ -92,10 +92,8 @@ pub struct Scratch {
     pub(crate) branches: Vec<path::Branch>,
     /// Boundaries that the current shadow ray crosses, nearest first; none where the scene has none.
     pub(crate) crossings: Vec<Hit>,
-    /// Triangles through which the sun may light the current vertex.
-    pub(in crate::integrator) candidates: Vec<u32>,
-    /// Ways of the sun through the current triangle.
-    pub(in crate::integrator) roots: Vec<beams::roots::Root>,
+    /// Ways of the sun to the current vertex.
+    pub(in crate::integrator) ways: beams::Ways,
     /// Events of all samples so far.
     pub counters: Counters,
 }

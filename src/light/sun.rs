@@ -41,6 +41,11 @@ impl Sun {
         self.frame.n
     }
 
+    /// 1 less the cosine of half its angular diameter; times 2 pi its solid angle.
+    pub fn one_minus_cos(&self) -> f32 {
+        self.one_minus_cos
+    }
+
     /// Half its angular diameter, in radians.
     pub fn half_angle(&self) -> f32 {
         let sine = self.sin_squared.sqrt();

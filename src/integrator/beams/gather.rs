@@ -3,14 +3,14 @@
 //! A triangle that is long, or whose normals turn much, lights a thin strip across a wide box. It is cut into halves, each
 //! with a box of its own, as long as these cover much less.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::index::{Index, Reach};
+use super::index::{Index, Reach, WIDTH};
 use super::patch::SunFrame;
 use super::piece::Piece;
 use super::shade::Shade;
-use super::sieve::Sieve;
+use super::sieve::{Sieve, Sieves};
 use super::spread::{Fan, Slopes, angle, slope_about};
 use super::{Beam, Beams, SunBeams};
 use crate::geometry::triangle::scaled_normal;
@@ -28,6 +28,9 @@ const COMPACT: f32 = 3.0;
 const LOOSE: f64 = 0.02;
 /// Triangles are cut so often, at most.
 const MOST_CUTS: u32 = 8;
+
+/// Most rays are within so many times the root of the mean square.
+const SPREADS: f64 = 1.5;
 
 /// Wavelengths at which indices are looked up: so many times four.
 const STEPS: u32 = 16;
@@ -56,9 +59,15 @@ impl SunBeams {
                 .flat_map_iter(|triangle| gatherer.beams(triangle))
                 .unzip();
         let (index, order) = Index::new(&reaches, depth);
-        let sieves = order.iter().map(|number| sieves[*number as usize]).collect();
+        let of_eight = |eight: &[u32]| {
+            let all: Vec<Sieve> = eight.iter().map(|number| sieves[*number as usize]).collect();
+            Sieves::new(&all)
+        };
+        let sieves = order.chunks(WIDTH).map(of_eight).collect();
         let beams = order.into_iter().map(|number| beams[number as usize]).collect();
-        Self { sun: gatherer.sun, shear: gatherer.shear, beams, sieves, index }
+        let Gatherer { sun, shear, spread, .. } = gatherer;
+        let mean = beams_come_from(&sun, shear, spread);
+        Self { sun, shear, mean, beams, sieves, index }
     }
 }
 
@@ -74,6 +83,8 @@ struct Gatherer<'a> {
     depth: f32,
     /// The mean slope of all rays, about.
     shear: DVec2,
+    /// Root of the mean square of how far slopes are from it.
+    spread: DVec2,
 }
 
 /// A triangle at the first and the last moment, in the frame of the sun; once where these are the same.
@@ -111,8 +122,9 @@ impl<'a> Gatherer<'a> {
             indices: indices(frame),
             depth,
             shear: DVec2::ZERO,
+            spread: DVec2::ZERO,
         };
-        own.shear = own.mean_slope();
+        (own.shear, own.spread) = own.mean_slope();
         own
     }
 
@@ -136,9 +148,10 @@ impl<'a> Gatherer<'a> {
         found
     }
 
-    /// The slope of rays that are bent about the triangles' own normals, in the mean over the light that they take.
-    fn mean_slope(&self) -> DVec2 {
-        let (mut sum, mut light) = (DVec2::ZERO, 0.0);
+    /// The slope of rays that are bent about the triangles' own normals, in the mean over the light that they take, and the root
+    /// of the mean square of how far it is from that.
+    fn mean_slope(&self) -> (DVec2, DVec2) {
+        let (mut sum, mut squares, mut light) = (DVec2::ZERO, DVec2::ZERO, 0.0);
         for triangle in 0..self.frame.geometry.triangles.len() as u32 {
             let Surface::Interface(pair) = self.frame.surface(triangle) else { continue };
             let area = self.sun.local(scaled_normal(&self.frame.geometry.vertices(triangle)));
@@ -151,10 +164,15 @@ impl<'a> Gatherer<'a> {
             let slope = slope_about(normal, 0.5 * (least + most));
             if slope.is_finite() {
                 sum += slope * area.z.abs();
+                squares += slope * slope * area.z.abs();
                 light += area.z.abs();
             }
         }
-        if light > 0.0 { sum / light } else { DVec2::ZERO }
+        if light <= 0.0 {
+            return (DVec2::ZERO, DVec2::ZERO);
+        }
+        let mean = sum / light;
+        (mean, (squares / light - mean * mean).max(DVec2::ZERO).map(f64::sqrt))
     }
 
     /// The triangle as the sun sees it; none where it shines on its other side only.
@@ -269,6 +287,12 @@ impl<'a> Gatherer<'a> {
         let [start, middle, end] = [first, 0.5 * (first + last), last].map(scaled);
         [start, 2.0 * middle - 0.5 * (start + end), end]
     }
+}
+
+/// Directions from which rays of a mean slope come, and of those that are as far from it as most.
+fn beams_come_from(sun: &SunFrame, mean: DVec2, spread: DVec2) -> [Vec3; 5] {
+    let [s, t] = [DVec2::X, DVec2::Y].map(|axis| SPREADS * spread * axis);
+    [mean, mean + s, mean - s, mean + t, mean - t].map(|slope| -sun.world(slope.extend(1.0).normalize()))
 }
 
 /// Least and greatest index of each medium over wavelength.

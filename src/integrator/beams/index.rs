@@ -1,20 +1,21 @@
 //! Which triangles may send light of the sun to a point.
 //!
-//! A tree of eight children a node over boxes of where triangles are and how their refracted rays slope, in the frame of the
-//! sun. Rays of a box come to the point x only if
+//! A tree of eight children a node, over boxes of where triangles are and how their refracted rays slope, in the frame of
+//! the sun. Rays of a box come to the point x only if
 //!
 //! ```text
 //! x_st in [p_st] + [h] [e],   [h] = x_z - [p_z],   [h] above 0
 //! ```
 //! in intervals. It holds as well with the mean slope of all rays taken from e and, times their depth, from places: what a sea
-//! bends is then nearly straight along the third axis. So beams have no length, need not be cut into pieces, and nothing depends on how the surface lies: it is the
-//! hierarchy of positions and normals of Walter, Zhao, Holzschuch and Bala `[WALTER09]` for light of one direction, whose
-//! slopes say what normals do for a light at a point.
+//! bends is then nearly straight along the third axis. So beams have no length, need not be cut into pieces, and nothing
+//! depends on how the surface lies: it is the hierarchy of positions and normals of Walter, Zhao, Holzschuch and Bala
+//! `[WALTER09]` for light of one direction, whose slopes say what normals do for a light at a point.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use super::sieve::Sieves;
 use super::spread::Slopes;
-use crate::geometry::machine::{Work, in_wide_registers};
+use crate::geometry::machine::{Eight, Lanes, WithLanes, with_best};
 
 /// Where the rays of something begin and how they slope.
 #[derive(Clone, Copy, Debug)]
@@ -25,11 +26,11 @@ pub(super) struct Reach {
 }
 
 const AXES: usize = 5;
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 /// The rounding of coordinates in single precision, twice over, for each side of a comparison.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
-/// Eight to the power of this is more than any mesh has triangles, were every node as lopsided as halving allows.
-const DEEPEST: usize = 16;
+/// Eight to the power of this is more than there are numbers of 32 bits.
+const DEEPEST: usize = 11;
 
 impl Reach {
     /// Of points and slopes, both less a slope that is common to all that is asked for.
@@ -90,7 +91,7 @@ pub(super) fn sheared(x: Vec3, shear: Vec2) -> Vec3 {
     x - (shear * x.z).extend(0.0)
 }
 
-/// The tree.
+/// The tree. All nodes are full but those along its last branch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Index {
     nodes: Vec<Node>,
@@ -98,9 +99,9 @@ pub(super) struct Index {
 
 #[derive(Clone, Debug)]
 struct Node {
-    least: [[f32; WIDTH]; AXES],
-    most: [[f32; WIDTH]; AXES],
-    /// A node, or a leaf with [`LEAF`] set.
+    least: [Eight; AXES],
+    most: [Eight; AXES],
+    /// Nodes; of leaves the first has the place of all eight over eight, with [`LEAF`] set.
     children: [u32; WIDTH],
 }
 
@@ -122,39 +123,50 @@ impl Index {
         size_of_val(&*self.nodes)
     }
 
-    /// Lists the places in the order of all whose rays may come to a point.
-    pub(super) fn find(&self, x: Vec3, found: &mut Vec<u32>) {
+    /// Lists the places in the order of all whose rays may come to a point, once less the slope that is common to all and
+    /// once as it is, and that the sieves, eight of that order each, hold.
+    pub(super) fn find(&self, sheared: Vec3, point: Vec3, sieves: &[Sieves], found: &mut Vec<u32>) {
         found.clear();
-        in_wide_registers(Search { index: self, x, found });
+        with_best(Search { index: self, x: sheared, point, sieves, found });
     }
 }
 
 struct Search<'a> {
     index: &'a Index,
     x: Vec3,
+    point: Vec3,
+    sieves: &'a [Sieves],
     found: &'a mut Vec<u32>,
 }
 
-impl Work for Search<'_> {
+impl WithLanes for Search<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        let Self { index, x, found } = self;
+    fn run<L: Lanes>(self) {
+        let Self { index, x, point, sieves, found } = self;
         let mut waiting = [0_u32; DEEPEST * WIDTH];
         let mut count = usize::from(!index.nodes.is_empty());
         while count > 0 {
             count -= 1;
             let node = &index.nodes[waiting[count] as usize];
-            let mut met = node.met(x);
-            while met != 0 {
-                let child = node.children[met.trailing_zeros() as usize];
-                met &= met - 1;
-                if child & LEAF == 0 {
-                    waiting[count] = child;
+            let mut met = node.met::<L>(x);
+            if met == 0 {
+                continue;
+            }
+            let first = node.children[0];
+            if first & LEAF == 0 {
+                while met != 0 {
+                    waiting[count] = node.children[met.trailing_zeros() as usize];
+                    met &= met - 1;
                     count += 1;
-                } else {
-                    found.push(child & !LEAF);
+                }
+            } else {
+                let eight = first & !LEAF;
+                met &= sieves[eight as usize].held::<L>(point);
+                while met != 0 {
+                    found.push(eight * WIDTH as u32 + met.trailing_zeros());
+                    met &= met - 1;
                 }
             }
         }
@@ -164,26 +176,21 @@ impl Work for Search<'_> {
 impl Node {
     /// The children whose rays may come to a point, a bit each.
     #[inline(always)]
-    fn met(&self, x: Vec3) -> u32 {
+    fn met<L: Lanes>(&self, x: Vec3) -> u32 {
         let slack = ROUNDING * x.abs();
-        let mut near = [0.0_f32; WIDTH];
-        let mut far = [0.0_f32; WIDTH];
-        let mut met = [true; WIDTH];
-        for k in 0..WIDTH {
-            near[k] = (x.z - slack.z - self.most[2][k]).max(0.0);
-            far[k] = x.z + slack.z - self.least[2][k];
-            met[k] = far[k] > 0.0;
-        }
+        let zero = L::splat(0.0);
+        let near = L::splat(x.z - slack.z).sub(L::load(&self.most[2])).max(zero);
+        let far = L::splat(x.z + slack.z).sub(L::load(&self.least[2]));
+        let mut met = !far.at_most(zero);
         for (axis, (at, slack)) in [(x.x, slack.x), (x.y, slack.y)].into_iter().enumerate() {
-            for k in 0..WIDTH {
-                let (least, most) = (self.least[3 + axis][k], self.most[3 + axis][k]);
-                let low = self.least[axis][k] + (near[k] * least).min(far[k] * least);
-                let high = self.most[axis][k] + (near[k] * most).max(far[k] * most);
-                let slack = slack + ROUNDING * far[k];
-                met[k] &= (at + slack >= low) & (at - slack <= high);
-            }
+            let (least, most) = (L::load(&self.least[3 + axis]), L::load(&self.most[3 + axis]));
+            let low = L::load(&self.least[axis]).add(near.mul(least).min(far.mul(least)));
+            let high = L::load(&self.most[axis]).add(near.mul(most).max(far.mul(most)));
+            let slack = L::splat(slack).add(far.mul(L::splat(ROUNDING)));
+            let at = L::splat(at);
+            met &= low.at_most(at.add(slack)) & at.sub(slack).at_most(high);
         }
-        met.iter().enumerate().fold(0, |bits, (k, met)| bits | u32::from(*met) << k)
+        met
     }
 }
 
@@ -199,34 +206,35 @@ impl Builder<'_> {
     fn node(&mut self, numbers: &mut [u32]) -> u32 {
         let number = self.nodes.len() as u32;
         self.nodes.push(Node {
-            least: [[f32::INFINITY; WIDTH]; AXES],
-            most: [[f32::NEG_INFINITY; WIDTH]; AXES],
+            least: [Eight([f32::INFINITY; WIDTH]); AXES],
+            most: [Eight([f32::NEG_INFINITY; WIDTH]); AXES],
             children: [0; WIDTH],
         });
+        // What a full child holds: all before the last one are full.
+        let mut room = 1;
+        while room * WIDTH < numbers.len() {
+            room *= WIDTH;
+        }
+        if room == 1 {
+            self.nodes[number as usize].children[0] = (self.order.len() / WIDTH) as u32 | LEAF;
+        }
         let mut parts = vec![numbers];
-        while parts.len() < WIDTH {
-            let (at, largest) =
-                parts.iter().map(|part| part.len()).enumerate().max_by_key(|p| p.1).unwrap_or((0, 1));
-            if largest < 2 {
-                break;
-            }
-            let part = parts.swap_remove(at);
-            let (left, right) = self.halves(part);
-            parts.extend([left, right]);
+        while let Some(at) = parts.iter().position(|part| part.len() > room) {
+            let (left, right) = self.cut(parts.remove(at), room);
+            parts.splice(at..at, [left, right]);
         }
         for (slot, part) in parts.into_iter().enumerate() {
             let reach = self.around(part);
-            let child = if let [number] = part {
-                self.order.push(*number);
-                (self.order.len() as u32 - 1) | LEAF
+            if room == 1 {
+                self.order.extend_from_slice(part);
             } else {
-                self.node(part)
-            };
+                let child = self.node(part);
+                self.nodes[number as usize].children[slot] = child;
+            }
             let node = &mut self.nodes[number as usize];
-            node.children[slot] = child;
             for axis in 0..AXES {
-                node.least[axis][slot] = reach.least[axis];
-                node.most[axis][slot] = reach.most[axis];
+                node.least[axis].0[slot] = reach.least[axis];
+                node.most[axis].0[slot] = reach.most[axis];
             }
         }
         number
@@ -236,28 +244,29 @@ impl Builder<'_> {
         part.iter().fold(Reach::NOTHING, |all, i| all.union(&self.all[*i as usize]))
     }
 
-    /// Halves by number, along the axis on which they cover least.
-    fn halves<'o>(&self, part: &'o mut [u32]) -> (&'o mut [u32], &'o mut [u32]) {
-        let half = part.len() / 2;
-        let cut = |part: &mut [u32], axis: usize| {
+    /// Two parts, along the axis on which they cover least: as many children full on the left as on the right, but for one.
+    fn cut<'o>(&self, part: &'o mut [u32], room: usize) -> (&'o mut [u32], &'o mut [u32]) {
+        let half = part.len().div_ceil(room) / 2 * room;
+        let sort = |part: &mut [u32], axis: usize| {
             let middle = |i: &u32| self.all[*i as usize].middle(axis);
             part.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.cmp(b)));
         };
         let mut best = (f32::INFINITY, 0);
         for axis in 0..AXES {
-            cut(part, axis);
+            sort(part, axis);
             let [left, right] = [&part[..half], &part[half..]].map(|side| self.around(side).area(self.depth));
             if left + right < best.0 {
                 best = (left + right, axis);
             }
         }
-        cut(part, best.1);
+        sort(part, best.1);
         part.split_at_mut(half)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::sieve::Sieve;
     use super::*;
     use crate::sampling::{SampleSeed, SampleStream};
 
@@ -282,6 +291,7 @@ mod tests {
         let reaches: Vec<Reach> =
             all.iter().map(|(p, slopes)| Reach::new(corner(*p).into_iter(), slopes, SHEAR)).collect();
         let (index, order) = Index::new(&reaches, 2.0);
+        let sieves = vec![Sieves::new(&[Sieve::OPEN; WIDTH]); order.len().div_ceil(WIDTH)];
         let (mut visited, mut places) = (0, Vec::new());
         for i in 0..3000_u32 {
             let [u, v, h, e] = numbers(i, 2);
@@ -290,7 +300,8 @@ mod tests {
             let from = c[0] + (c[1] - c[0]) * u * (1.0 - v) + (c[2] - c[0]) * v;
             let slope = slopes.least + (slopes.most - slopes.least) * DVec2::new(e, h);
             let x = from + slope.extend(1.0) * (4.0 * h);
-            index.find(sheared(x.as_vec3(), SHEAR.as_vec2()), &mut places);
+            let x = x.as_vec3();
+            index.find(sheared(x, SHEAR.as_vec2()), x, &sieves, &mut places);
             let mut found: Vec<u32> = places.iter().map(|k| order[*k as usize]).collect();
             assert!(found.contains(&i), "{i}");
             visited += found.len();
@@ -304,7 +315,7 @@ mod tests {
     #[test]
     fn nothing_is_found_in_nothing() {
         let mut found = vec![1];
-        Index::new(&[], 1.0).0.find(Vec3::ZERO, &mut found);
+        Index::new(&[], 1.0).0.find(Vec3::ZERO, Vec3::ZERO, &[], &mut found);
         assert!(found.is_empty());
     }
 }

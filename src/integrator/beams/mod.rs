@@ -19,6 +19,7 @@
 //! | where each can send light of the whole disc | `spread.rs` |
 //! | a hierarchy over these, asked for a point, and a first look at what it gives | `index.rs`, `sieve.rs` |
 //! | all solutions g = 0 in a triangle | `patch.rs`, `roots.rs` |
+//! | the search as a whole | `query.rs` |
 //! | what they bring, and what is in the way | `light.rs` |
 //!
 //! Nishita and Nakamae `[NISHITA94]` follow the volumes that triangles sweep, Walter, Zhao, Holzschuch and Bala `[WALTER09]` the
@@ -37,18 +38,22 @@ mod index;
 mod light;
 mod patch;
 mod piece;
-pub(super) mod roots;
+mod query;
+mod roots;
 mod shade;
 mod sieve;
 mod spread;
 
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 
 use crate::optics::medium::MediumId;
+pub use query::Searcher;
+pub(super) use query::Ways;
+
 use index::Index;
 use patch::SunFrame;
 use piece::Piece;
-use sieve::Sieve;
+use sieve::Sieves;
 
 /// The triangles that bend light of suns, and where they can send it.
 #[derive(Clone, Debug)]
@@ -66,8 +71,10 @@ struct SunBeams {
     /// The mean slope of all rays, which the index leaves out.
     shear: DVec2,
     beams: Vec<Beam>,
-    /// A first look at each.
-    sieves: Vec<Sieve>,
+    /// From where light comes in the mean, and from where most of it does on each side.
+    mean: [Vec3; 5],
+    /// A first look at eight each.
+    sieves: Vec<Sieves>,
     index: Index,
 }
 

@@ -190,6 +190,23 @@ impl Aim<'_> {
         (by_cos * self.to_sun.dot(dn)) * n + (self.eta * bent.cos_i - bent.cos_t) * dn
     }
 
+    /// From where light is bent at (u, v) towards the point; none where it is reflected totally, or comes from behind.
+    pub(super) fn source(&self, uv: DVec2) -> Option<DVec3> {
+        let way = self.patch.way(self.x, uv);
+        let (direction, normal) = (way.normalize(), self.patch.normal(uv).normalize());
+        let cos_t = -direction.dot(normal);
+        let across = -(direction + cos_t * normal) / self.eta; // Snell
+        let squared = 1.0 - across.length_squared();
+        (way.z > 0.0 && cos_t > 0.0 && squared > 0.0).then(|| across + squared.sqrt() * normal)
+    }
+
+    /// Solid angle of directions to the sun from which light comes to the point, over the area in (u, v) that bends it there.
+    pub(super) fn sun_by_place(&self, pass: &Pass) -> f64 {
+        let Bent { direction, cos_i, cos_t, .. } = pass.bent;
+        let by_slope = direction.z.powi(3) * pass.jacobian.determinant().abs() / pass.depth.powi(2);
+        by_slope * cos_t / (cos_i * self.eta * self.eta)
+    }
+
     /// Irradiance across a ray at the point over that across the sun's light before the interface, without what is lost.
     pub(super) fn gathered(&self, pass: &Pass) -> f64 {
         let Bent { direction, cos_i, cos_t, .. } = pass.bent;

@@ -21,6 +21,20 @@ impl Piece {
         (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
     }
 
+    /// Its area, where that of the triangle is a half.
+    pub(super) fn area(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        0.5 * (b - a).perp_dot(c - a).abs()
+    }
+
+    /// A point of it, evenly spread as that of the unit square is.
+    pub(super) fn at(&self, square: [f32; 2]) -> DVec2 {
+        let [u, v] = square.map(f64::from);
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        let [a, b, c] = self.corners;
+        a + (b - a) * u + (c - a) * v
+    }
+
     /// The middles of the edges opposite to the corners.
     pub(super) fn middles(&self) -> [DVec2; 3] {
         let [a, b, c] = self.corners;

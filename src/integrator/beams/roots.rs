@@ -24,7 +24,7 @@ use super::spread::{Fan, angle};
 
 /// A ray that meets the point.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::integrator) struct Root {
+pub(super) struct Root {
     /// Weights of the second and the third corner.
     pub(super) uv: DVec2,
     pub(super) pass: Pass,

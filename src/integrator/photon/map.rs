@@ -8,6 +8,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::geometry::machine::{Work, in_wide_registers};
 use crate::geometry::{Bounds, Ray};
 use crate::optics::medium::MediumId;
 use crate::spectrum::Lanes;
@@ -97,17 +98,13 @@ impl PhotonMap {
     /// Shows each photon whose reach comes within `radius` of a point, with the square of its distance and its reach.
     #[inline]
     pub fn each_around(&self, centre: Vec3, radius: f32, mut visit: impl FnMut(&Photon, f32, f32)) {
-        self.walk(
-            |group, out| group.squared_distances(centre, out),
-            (radius * radius).max(f32::MIN_POSITIVE),
-            |photon| {
-                let squared = photon.position.distance_squared(centre);
-                let reach = self.radius * photon.spread;
-                if squared < (radius + reach) * (radius + reach) {
-                    visit(photon, squared, reach);
-                }
-            },
-        );
+        self.walk(centre, (radius * radius).max(f32::MIN_POSITIVE), |photon| {
+            let squared = photon.position.distance_squared(centre);
+            let reach = self.radius * photon.spread;
+            if squared < (radius + reach) * (radius + reach) {
+                visit(photon, squared, reach);
+            }
+        });
     }
 
     /// Shows each photon that reaches the line of a ray, with the distance along the line, the square of that from it,
@@ -122,20 +119,16 @@ impl PhotonMap {
         mut visit: impl FnMut(&Photon, f32, f32, f32),
     ) {
         let slabs = RaySlabs::new(ray, [-beyond[0] * self.widest, ray.t_max + beyond[1] * self.widest]);
-        self.walk(
-            |group, out| group.entered(&slabs, out),
-            0.5,
-            |photon| {
-                let to = photon.position - ray.origin;
-                let along = to.dot(ray.direction);
-                let squared = (to - ray.direction * along).length_squared();
-                let reach = self.radius * photon.spread;
-                let is_beside = along > -beyond[0] * reach && along < ray.t_max + beyond[1] * reach;
-                if squared < reach * reach && is_beside {
-                    visit(photon, along, squared, reach);
-                }
-            },
-        );
+        self.walk(slabs, 0.5, |photon| {
+            let to = photon.position - ray.origin;
+            let along = to.dot(ray.direction);
+            let squared = (to - ray.direction * along).length_squared();
+            let reach = self.radius * photon.spread;
+            let is_beside = along > -beyond[0] * reach && along < ray.t_max + beyond[1] * reach;
+            if squared < reach * reach && is_beside {
+                visit(photon, along, squared, reach);
+            }
+        });
     }
 
     /// How far a point is from what the nearest photon reaches, at most `most`; 0 within.
@@ -174,8 +167,46 @@ impl PhotonMap {
 
     /// Visits the photons of all groups whose measure is below `limit`.
     #[inline(always)]
-    fn walk(&self, measure: impl Fn(&Group, &mut [f32; WIDTH]), limit: f32, mut visit: impl FnMut(&Photon)) {
-        let Some(top) = self.levels.len().checked_sub(1) else { return };
+    fn walk(&self, measure: impl Measure, limit: f32, visit: impl FnMut(&Photon)) {
+        in_wide_registers(Walk { map: self, measure, limit, visit });
+    }
+}
+
+/// What is asked of the boxes of a group. No closure: it would not be compiled for wide registers.
+trait Measure {
+    fn of(&self, group: &Group, out: &mut [f32; WIDTH]);
+}
+
+/// Squared distances.
+impl Measure for Vec3 {
+    #[inline(always)]
+    fn of(&self, group: &Group, out: &mut [f32; WIDTH]) {
+        group.squared_distances(*self, out);
+    }
+}
+
+/// 0 for the boxes that a ray enters, 1 for others.
+impl Measure for RaySlabs {
+    #[inline(always)]
+    fn of(&self, group: &Group, out: &mut [f32; WIDTH]) {
+        group.entered(self, out);
+    }
+}
+
+struct Walk<'a, M, V> {
+    map: &'a PhotonMap,
+    measure: M,
+    limit: f32,
+    visit: V,
+}
+
+impl<M: Measure, V: FnMut(&Photon)> Work for Walk<'_, M, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { map, measure, limit, mut visit } = self;
+        let Some(top) = map.levels.len().checked_sub(1) else { return };
         let mut stack = [(0_u8, 0_u32); STACK];
         stack[0] = (top as u8, 0);
         let mut waiting = 1;
@@ -183,15 +214,15 @@ impl PhotonMap {
             waiting -= 1;
             let (level, index) = stack[waiting];
             let mut measures = [0.0; WIDTH];
-            measure(&self.levels[level as usize][index as usize], &mut measures);
+            measure.of(&map.levels[level as usize][index as usize], &mut measures);
             let first = index as usize * WIDTH;
-            let below = if level == 0 { self.photons.len() } else { self.levels[level as usize - 1].len() };
+            let below = if level == 0 { map.photons.len() } else { map.levels[level as usize - 1].len() };
             for (child, measure) in (first..below).zip(measures) {
                 if measure >= limit {
                     continue;
                 }
                 if level == 0 {
-                    visit(&self.photons[child]);
+                    visit(&map.photons[child]);
                 } else {
                     stack[waiting] = (level - 1, child as u32);
                     waiting += 1;

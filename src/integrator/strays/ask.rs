@@ -1,7 +1,8 @@
 //! Where eye paths ask for stray photons.
 //!
 //! The eye's own rays ask along all of their ways through a medium, up to the surface. Later rays ask no farther than to the
-//! particle that they have drawn, and divide by the chance with which the flight passes a photon, as for a surface there:
+//! particle that they have drawn, and divide by the chance with which the flight passes a photon, as for a surface there. Paths
+//! that bring little ask now and then, with a chance that fits the share of photons in the light:
 //!
 //! ```text
 //! whole way:  sum_p  T(t_p) ..,     up to the particle at s:  sum_p [t_p < s] T(t_p) / P(t_p) ..,     P(t) = chance of s > t
@@ -15,6 +16,10 @@ use crate::integrator::photon::reflected;
 use crate::integrator::roulette::chance_of_a_look;
 use crate::scene::geometry::SurfaceHit;
 use crate::spectrum::Lanes;
+
+/// The part of a path's light that photons bring, about: a path asks for them as often as one of so much of its weight asks for
+/// what costs as much. With 0.1 the scene of `tests/bench/hero` takes 0.76 of the time that 1 takes, at 1.04 times the variance.
+const SHARE: f32 = 0.1;
 
 impl<'a> Sample<'a> {
     /// Radiance that a surface of albedo 1 reflects of stray photons.
@@ -40,7 +45,7 @@ impl<'a> Sample<'a> {
         (t_max, end): (f32, Option<Hit>),
         left: impl Fn(f32) -> Lanes,
     ) {
-        let survival = chance_of_a_look(branch.weight());
+        let survival = chance_of_a_look(SHARE * branch.weight());
         if survival < 1.0 && branch.stream.next4()[0] >= survival {
             return;
         }
@@ -48,6 +53,18 @@ impl<'a> Sample<'a> {
         let end = end.and_then(|hit| self.visible_end(branch, &hit));
         let found =
             self.gathered((&pass.volume, pass.kernel), branch, &ray, end, |_, _, length| left(length));
+        {
+            let c = branch.throughput * (found / survival);
+            if c.max_element() > 2.0 {
+                eprintln!(
+                    "FF strayvol {} at {} inter {} weight {}",
+                    c,
+                    branch.origin,
+                    branch.interactions,
+                    branch.weight()
+                );
+            }
+        }
         self.radiance += branch.throughput * (found / survival);
     }
 
