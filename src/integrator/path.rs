@@ -325,17 +325,6 @@ impl Sample<'_> {
                 (value, led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w)))
             };
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
-            {
-                let c = branch.throughput * direct;
-                if c.max_element() > 2.0 {
-                    eprintln!(
-                        "FF volume {} at {point} inter {} weight {}",
-                        c,
-                        branch.interactions,
-                        branch.weight()
-                    );
-                }
-            }
             self.radiance += branch.throughput * direct;
         }
         let turned = match (&led, phase) {
@@ -380,11 +369,7 @@ impl Sample<'_> {
             radiance = lights.environment.radiance(branch.direction, self.wavelengths) * weight;
         }
         if branch.arrival.specular_from_eye {
-            let s = lights.of_suns(branch.direction, self.wavelengths);
-            if s.max_element() > 0.0 {
-                eprintln!("FF disc {} inter {}", branch.throughput * s, branch.interactions);
-            }
-            radiance += s;
+            radiance += lights.of_suns(branch.direction, self.wavelengths);
         }
         self.radiance += branch.throughput * radiance;
     }

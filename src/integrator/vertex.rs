@@ -154,12 +154,6 @@ impl Sample<'_> {
         self.remember_first(branch, hit, albedo);
         let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
         let guide = self.photons.and_then(|pass| self.take_photons(pass, branch, hit, albedo));
-        {
-            let c = branch.throughput * albedo * self.strays_on(hit);
-            if c.max_element() > 2.0 {
-                eprintln!("FF straysurf {} inter {} weight {}", c, branch.interactions, branch.weight());
-            }
-        }
         self.radiance += branch.throughput * albedo * self.strays_on(hit);
         let pdf_w = |wi: Vec3| match &guide {
             None => lobe.pdf_w(wi),
@@ -182,18 +176,6 @@ impl Sample<'_> {
             };
             let response = |wi: Vec3| (albedo * lobe.pdf_w(wi), pdf_w(wi));
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
-            {
-                let c = branch.throughput * direct;
-                if c.max_element() > 2.0 {
-                    eprintln!(
-                        "FF surface {} at {} inter {} weight {}",
-                        c,
-                        hit.point.position,
-                        branch.interactions,
-                        branch.weight()
-                    );
-                }
-            }
             self.radiance += branch.throughput * direct;
         }
         let wi = match &guide {

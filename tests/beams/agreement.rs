@@ -120,3 +120,18 @@ fn a_ball_of_water() {
         compare(normals, &folder, &text, 0.03, true, [32, 8]);
     }
 }
+
+/// A screen in a bubble under water, whose normals let light in where its coarse faces reflect all of it.
+#[test]
+fn a_bubble_in_a_sea() {
+    let screen = parallelogram(DVec3::new(-0.6, -0.6, -0.1), DVec3::X * 1.2, DVec3::Y * 1.2);
+    let folder =
+        SceneFolder::new().mesh("ball.ply", &sphere(DVec3::ZERO, 1.0, 1)).mesh("screen.ply", &screen);
+    let text = "[media.air]\nior = 1.33\n[media.bubble]\nior = 1.0\n\
+                [[surfaces]]\nmesh = \"ball.ply\"\nfront = \"air\"\nback = \"bubble\"\nnormals = \"smooth\"\n\
+                material = { kind = \"dielectric\" }\n\
+                [[surfaces]]\nmesh = \"screen.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0.5 }\n\
+                [sun]\ndirection = [0.3, -0.2, 0.9]\nangular_diameter = 0.53\nirradiance = 3\n\
+                [camera]\neye = [0, -0.45, 0.5]\ntarget = [0, 0, -0.1]\nvertical_fov = 60\nresolution = [32, 24]\n";
+    compare("bubble", &folder, text, 0.02, true, [8, 4]);
+}

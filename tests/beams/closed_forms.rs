@@ -81,6 +81,9 @@ fn the_sun_on_a_floor_under_flat_water() {
         (-sigma / cos_t).exp() * ways.iter().map(|d| (-sigma * d).exp()).sum::<f64>() / ways.len() as f64
     };
     assert_close("absorbing", &scene, light * DVec3::new(dimmed(1.0), dimmed(0.3), 1.0), 64);
+    // So little of it comes to the eye that the sun is looked for now and then only.
+    let scene = pool("absorption = 6", "flat");
+    assert_close("nearly opaque", &scene, light * dimmed(6.0), 2000);
 }
 
 /// Each of two suns falls on the floor as it would alone, dimmed along its own way.

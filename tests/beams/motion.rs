@@ -137,3 +137,27 @@ fn crests_that_become_troughs() {
         assert_is_the_mean_of_its_moments("turning", &surface(crest), velocity, normals);
     }
 }
+
+/// A black plate over flat water that leaves while the shutter is open: what is in the shade when it opens is lit afterwards.
+///
+/// The edge of the plate goes 40 m, and 10 m of them until the sun comes to the water above the middle of the floor; where it
+/// comes to the rest of what the camera sees of that is within a metre and a half of there, and within half a metre in the
+/// mean. 6912 pixels' samples, of which three quarters are lit, tell the mean within 0.006 at one standard error, as they would
+/// if they were independent; with 4 of these it is within 0.04.
+#[test]
+fn a_shadow_that_goes_away() {
+    const WAY: f64 = 40.0;
+    let mean = |y: f64| {
+        let (folder, walls) = folder();
+        let plate = parallelogram(DVec3::new(-10.0, y - 10.0, 2.0), DVec3::X * 20.0, DVec3::Y * 20.0);
+        let plate = plate.moving_ply(|_| DVec3::X * WAY / SHUTTER * FPS);
+        let folder = folder.mesh("surface.ply", &surface(|_| 0.0)).file("plate_0001.ply", plate.as_bytes());
+        let text = text(&walls, "flat", SHUTTER).replace("surface_####", "surface");
+        let plate =
+            "[[surfaces]]\nmesh = \"plate_####.ply\"\nmaterial = { kind = \"diffuse\", reflectance = 0 }\n";
+        folder.scene(&format!("{text}{plate}")).render(16, 1).mean().0.x
+    };
+    let share = mean(0.0) / mean(100.0);
+    println!("{share:.4} of the time it is lit");
+    assert!((share - (1.0 - 10.0 / WAY)).abs() < 0.04, "{share}");
+}

@@ -182,7 +182,9 @@ impl<'a> Gatherer<'a> {
         let ends = [self.frame.views.time(0.0), self.frame.views.time(1.0)];
         let times = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
         let eta = self.eta(pair, front);
-        let own = Fan::new(&self.own_normals(triangle, ends, side), self.alpha, eta).filter(Fan::is_lit)?;
+        // Interpolated normals may let light through where its own reflects all of it.
+        let own = Fan::new(&self.own_normals(triangle, ends, side), self.alpha, eta);
+        let own = own.filter(Fan::faces_the_sun)?;
         let corners = times.iter().map(|&t| geometry.vertices_at(triangle, t).map(|p| self.sun.local(p)));
         let normals = times.iter().filter_map(|&t| geometry.shading_normals(triangle, t));
         let normals = normals.map(|all| all.map(|n| self.sun.local(n) * side));
@@ -235,7 +237,7 @@ impl<'a> Gatherer<'a> {
                 Some(fan) => (fan.slopes(), fan.bulge()),
                 None => (Slopes::widest(turning.eta, self.alpha), f64::INFINITY),
             }
-        } else if shading().is_some_and(|fan| is_sound(&fan, &turning.own)) {
+        } else if !turning.own.is_lit() || shading().is_some_and(|fan| is_sound(&fan, &turning.own)) {
             return None;
         } else {
             (turning.own.slopes(), 0.0)
@@ -316,10 +318,9 @@ fn is_sound(shading: &Fan, own: &Fan) -> bool {
     let quarter = std::f64::consts::FRAC_PI_2 - 1e-4;
     let lean = angle(shading.normal, own.normal) + shading.phi + own.phi;
     let sun = angle(own.normal, DVec3::NEG_Z) + own.phi + own.alpha;
-    let lit = angle(shading.normal, DVec3::NEG_Z) + shading.phi + shading.alpha;
     // A ray bent about the own normal is mirrored about an interpolated one to at most twice the lean from where it was.
     let by_own = 2.0 * lean + own.steepest() < quarter && lean + sun < quarter;
-    by_own && lean + shading.steepest() < quarter && lit < quarter
+    by_own && lean + shading.steepest() < quarter
 }
 
 /// What is linear over a triangle.

@@ -12,6 +12,7 @@
 //! `[WALTER09]` for light of one direction, whose slopes say what normals do for a light at a point.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::sieve::Sieves;
 use super::spread::Slopes;
@@ -111,11 +112,8 @@ impl Index {
     /// Over all, of which it gives the order that it visits them by; light is looked for about so far behind them.
     pub(super) fn new(all: &[Reach], depth: f32) -> (Self, Vec<u32>) {
         let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
-        let mut builder = Builder { all, depth, nodes: Vec::new(), order: Vec::new() };
-        if !numbers.is_empty() {
-            builder.node(&mut numbers);
-        }
-        (Self { nodes: builder.nodes }, builder.order)
+        let grown = if all.is_empty() { Grown::default() } else { Builder { all, depth }.tree(&mut numbers) };
+        (Self { nodes: grown.nodes }, grown.order)
     }
 
     /// Bytes that it occupies.
@@ -174,6 +172,19 @@ impl WithLanes for Search<'_> {
 }
 
 impl Node {
+    const EMPTY: Self = Self {
+        least: [Eight([f32::INFINITY; WIDTH]); AXES],
+        most: [Eight([f32::NEG_INFINITY; WIDTH]); AXES],
+        children: [0; WIDTH],
+    };
+
+    fn hold(&mut self, slot: usize, reach: &Reach) {
+        for axis in 0..AXES {
+            self.least[axis].0[slot] = reach.least[axis];
+            self.most[axis].0[slot] = reach.most[axis];
+        }
+    }
+
     /// The children whose rays may come to a point, a bit each.
     #[inline(always)]
     fn met<L: Lanes>(&self, x: Vec3) -> u32 {
@@ -194,50 +205,70 @@ impl Node {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Builder<'a> {
     all: &'a [Reach],
     depth: f32,
+}
+
+/// A tree, or a part of one, and what it visits.
+#[derive(Default)]
+struct Grown {
     nodes: Vec<Node>,
     order: Vec<u32>,
 }
 
+/// From so many on the parts of a node are built side by side.
+const MANY: usize = 4096;
+/// Of more than so many about as many tell along which axis they are cut.
+const TELLING: usize = 128;
+
+impl Grown {
+    /// Appends a part that was built alone; tells its place as a child. Leaves before it are full.
+    fn take(&mut self, part: Self) -> u32 {
+        let (nodes, eights) = (self.nodes.len() as u32, (self.order.len() / WIDTH) as u32);
+        self.order.extend(part.order);
+        let moved = |child: u32| if child & LEAF == 0 { child + nodes } else { child + eights };
+        self.nodes.extend(part.nodes.into_iter().map(|mut node| {
+            node.children = node.children.map(moved);
+            node
+        }));
+        nodes
+    }
+}
+
 impl Builder<'_> {
-    /// A node over these, whose order it may change.
-    fn node(&mut self, numbers: &mut [u32]) -> u32 {
-        let number = self.nodes.len() as u32;
-        self.nodes.push(Node {
-            least: [Eight([f32::INFINITY; WIDTH]); AXES],
-            most: [Eight([f32::NEG_INFINITY; WIDTH]); AXES],
-            children: [0; WIDTH],
-        });
+    /// A tree over these, whose order it may change.
+    fn tree(&self, numbers: &mut [u32]) -> Grown {
+        let count = numbers.len();
         // What a full child holds: all before the last one are full.
         let mut room = 1;
-        while room * WIDTH < numbers.len() {
+        while room * WIDTH < count {
             room *= WIDTH;
-        }
-        if room == 1 {
-            self.nodes[number as usize].children[0] = (self.order.len() / WIDTH) as u32 | LEAF;
         }
         let mut parts = vec![numbers];
         while let Some(at) = parts.iter().position(|part| part.len() > room) {
             let (left, right) = self.cut(parts.remove(at), room);
             parts.splice(at..at, [left, right]);
         }
-        for (slot, part) in parts.into_iter().enumerate() {
-            let reach = self.around(part);
-            if room == 1 {
-                self.order.extend_from_slice(part);
-            } else {
-                let child = self.node(part);
-                self.nodes[number as usize].children[slot] = child;
-            }
-            let node = &mut self.nodes[number as usize];
-            for axis in 0..AXES {
-                node.least[axis].0[slot] = reach.least[axis];
-                node.most[axis].0[slot] = reach.most[axis];
-            }
+        let mut grown = Grown { nodes: vec![Node::EMPTY], order: Vec::with_capacity(count) };
+        for (slot, part) in parts.iter().enumerate() {
+            grown.nodes[0].hold(slot, &self.around(part));
         }
-        number
+        if room == 1 {
+            grown.nodes[0].children[0] = LEAF;
+            grown.order.extend(parts.into_iter().flat_map(|part| part.iter().copied()));
+            return grown;
+        }
+        let children: Vec<Grown> = if count < MANY {
+            parts.into_iter().map(|part| self.tree(part)).collect()
+        } else {
+            parts.into_par_iter().map(|part| self.tree(part)).collect()
+        };
+        for (slot, part) in children.into_iter().enumerate() {
+            grown.nodes[0].children[slot] = grown.take(part);
+        }
+        grown
     }
 
     fn around(&self, part: &[u32]) -> Reach {
@@ -247,20 +278,34 @@ impl Builder<'_> {
     /// Two parts, along the axis on which they cover least: as many children full on the left as on the right, but for one.
     fn cut<'o>(&self, part: &'o mut [u32], room: usize) -> (&'o mut [u32], &'o mut [u32]) {
         let half = part.len().div_ceil(room) / 2 * room;
-        let sort = |part: &mut [u32], axis: usize| {
-            let middle = |i: &u32| self.all[*i as usize].middle(axis);
-            part.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.cmp(b)));
+        let axis = match part.len() / TELLING {
+            0 | 1 => self.axis(part, half),
+            step => {
+                let mut some: Vec<u32> = part.iter().copied().step_by(step).collect();
+                self.axis(&mut some, half / step)
+            }
         };
+        self.sort(part, half, axis);
+        part.split_at_mut(half)
+    }
+
+    /// The axis on which the parts before and from a place on cover least.
+    fn axis(&self, part: &mut [u32], half: usize) -> usize {
         let mut best = (f32::INFINITY, 0);
         for axis in 0..AXES {
-            sort(part, axis);
+            self.sort(part, half, axis);
             let [left, right] = [&part[..half], &part[half..]].map(|side| self.around(side).area(self.depth));
             if left + right < best.0 {
                 best = (left + right, axis);
             }
         }
-        sort(part, best.1);
-        part.split_at_mut(half)
+        best.1
+    }
+
+    /// Puts as many of the lowest along an axis first.
+    fn sort(&self, part: &mut [u32], half: usize, axis: usize) {
+        let middle = |i: &u32| self.all[*i as usize].middle(axis);
+        part.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)).then(a.cmp(b)));
     }
 }
 
@@ -276,8 +321,10 @@ mod tests {
     /// intervals cannot tell.
     #[test]
     fn everything_that_reaches_a_point_is_found() {
+        // As many as are built side by side, twice over.
+        const BOXES: u32 = 2 * MANY as u32;
         let numbers = |i: u32, k: u32| SampleStream::new(SampleSeed::new(9), i, k, 0).next4().map(f64::from);
-        let all: Vec<(DVec3, Slopes)> = (0..3000)
+        let all: Vec<(DVec3, Slopes)> = (0..BOXES)
             .map(|i| {
                 let ([x, y, z, _], [a, b, wide, _]) = (numbers(i, 0), numbers(i, 1));
                 let (middle, wide) = (DVec2::new(a, b) - 0.5, DVec2::splat(0.02 * wide));
@@ -293,7 +340,7 @@ mod tests {
         let (index, order) = Index::new(&reaches, 2.0);
         let sieves = vec![Sieves::new(&[Sieve::OPEN; WIDTH]); order.len().div_ceil(WIDTH)];
         let (mut visited, mut places) = (0, Vec::new());
-        for i in 0..3000_u32 {
+        for i in 0..BOXES {
             let [u, v, h, e] = numbers(i, 2);
             let (p, slopes) = all[i as usize];
             let c = corner(p);
@@ -307,9 +354,9 @@ mod tests {
             visited += found.len();
             found.sort_unstable();
             found.dedup();
-            assert!(found.len() <= 3000);
+            assert!(found.len() <= BOXES as usize);
         }
-        assert!(visited < 3000 * 100, "{visited} of 9 million");
+        assert!(visited < 8192 * 100 * 3, "{visited} of 67 million");
     }
 
     #[test]

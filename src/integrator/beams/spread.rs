@@ -96,6 +96,11 @@ impl Fan {
         (middle - wide < FRAC_PI_2).then(|| [(middle - wide).max(0.0), (middle + wide).min(FRAC_PI_2)])
     }
 
+    /// True where some light of the disc arrives from the side of some normal.
+    pub(super) fn faces_the_sun(&self) -> bool {
+        self.incidence().is_some()
+    }
+
     /// True where some light of the disc arrives from the side of some normal and may be refracted.
     pub(super) fn is_lit(&self) -> bool {
         self.incidence().is_some_and(|[least, _]| self.eta[0] * libm::sin(least) < 1.0)

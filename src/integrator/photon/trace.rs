@@ -215,7 +215,7 @@ impl Walk<'_> {
             Surface::Emitter { .. } => Fate::Ends,
             Surface::Layer(_) => self.meet_layer(flying, found, &hit, u),
             Surface::Interface(pair) if pair.matched => self.pass(flying, &hit, pair),
-            Surface::Interface(pair) => self.bend(flying, (found, &hit), pair, true, u),
+            Surface::Interface(pair) => self.bend(flying, (found, &hit), pair, None, u),
             Surface::Diffuse { reflectance } => self.arrive(flying, &hit, reflectance, u),
             Surface::Conductor { eta, k } => self.reflect_on_metal(flying, found, &hit, [eta, k], u),
         }
@@ -256,20 +256,16 @@ impl Walk<'_> {
         if pair.matched {
             return self.pass(flying, &hit, &pair);
         }
-        let fate = self.bend(flying, (&found, &hit), &pair, false, u);
-        if flying.branch.medium == crossing.media.0 {
-            flying.branch.insides = crossing.before;
-        }
-        fate
+        self.bend(flying, (&found, &hit), &pair, Some(&crossing), u)
     }
 
-    /// A refracting interface: one of the ways, by its share. `may_be_beam` is false for meshes that overlap.
+    /// A refracting interface: one of the ways, by its share, or each; `overlap` is what is crossed there of meshes that overlap.
     fn bend(
         &mut self,
         flying: &mut Flying,
         (found, hit): (&Hit, &SurfaceHit),
         pair: &MediumPair,
-        may_be_beam: bool,
+        overlap: Option<&Crossing>,
         u: [f32; 4],
     ) -> Fate {
         let branch = &mut flying.branch;
@@ -284,10 +280,13 @@ impl Walk<'_> {
         if self.stops_before(pair, hit) {
             ways.iter_mut().filter(|way| way.crosses).for_each(|way| way.share = 0.0);
         }
-        let is_beam = may_be_beam && frame.lit[incident.0 as usize] && self.has_beams();
+        let is_beam = overlap.is_none() && frame.lit[incident.0 as usize] && self.has_beams();
         let taken = |flying: &Flying, way: &PhotonWay, weight: f32| {
             let mut next = *flying;
             next.branch.medium = if way.crosses { beyond } else { incident };
+            if let Some(overlap) = overlap {
+                next.branch.insides = if way.crosses { overlap.beyond } else { overlap.before };
+            }
             next.branch.throughput *= weight;
             next.branch.go_on(hit, way.direction);
             next.turned_narrowly(way.crosses && is_beam);

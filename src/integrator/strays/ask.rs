@@ -53,18 +53,6 @@ impl<'a> Sample<'a> {
         let end = end.and_then(|hit| self.visible_end(branch, &hit));
         let found =
             self.gathered((&pass.volume, pass.kernel), branch, &ray, end, |_, _, length| left(length));
-        {
-            let c = branch.throughput * (found / survival);
-            if c.max_element() > 2.0 {
-                eprintln!(
-                    "FF strayvol {} at {} inter {} weight {}",
-                    c,
-                    branch.origin,
-                    branch.interactions,
-                    branch.weight()
-                );
-            }
-        }
         self.radiance += branch.throughput * (found / survival);
     }
 
