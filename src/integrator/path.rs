@@ -19,7 +19,7 @@ use super::{EyeSample, FirstHit, PreparedLight, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
 use crate::optics::medium::MediumId;
-use crate::optics::phase::{Deflection, PhaseLanes};
+use crate::optics::phase::{Deflection, LanesSample, PhaseLanes};
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
 use crate::scene::geometry::SurfaceHit;
@@ -309,6 +309,7 @@ impl Sample<'_> {
         let lamps = self.photons.is_none();
         let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
         let led = self.led(branch);
+        let glow = if led.is_none() { self.glow(branch.medium, throughput) } else { None };
         if lit {
             let receiver = Receiver {
                 position: point,
@@ -322,12 +323,26 @@ impl Sample<'_> {
             };
             let response = |wi: Vec3| {
                 let (value, phase_w) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
-                (value, led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w)))
+                let own = led.as_ref().map_or(phase_w, |led| led.pdf_w(wi, phase_w));
+                (value, glow.as_ref().map_or(own, |glow| glow.pdf_w(wi, own)))
             };
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
+        let mut drawn = 1.0;
         let turned = match (&led, phase) {
+            _ if let Some(glow) = &glow => {
+                let wi = glow.sample([u[1], u[2]], |u| phase.sample(forward, u, throughput).wi);
+                let (value, own) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
+                let pdf_w = glow.pdf_w(wi, own);
+                drawn = own / pdf_w;
+                LanesSample {
+                    wi,
+                    weight: if own > 0.0 { value / own } else { Lanes::ZERO },
+                    pdf_w,
+                    greatest: value.max_element(),
+                }
+            }
             (Some(led), PhaseLanes::One(phase)) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
                 self.scratch.around.flight = flight;
@@ -347,7 +362,9 @@ impl Sample<'_> {
         let looked = if lit { self.looked(branch, vertex, turned.wi) } else { Looked::Not };
         branch.arrival = Arrival { specular_from_eye: false, looked };
         (branch.bounces, branch.steps) = (0, 0);
-        branch.goes_on(u[3])
+        let fate = branch.goes_on(u[3]);
+        branch.throughput *= drawn;
+        if drawn > 0.0 { fate } else { Fate::Ends }
     }
 
     /// The path meets nothing any more: it sees the sky, and the discs of suns on a purely specular chain.

@@ -155,9 +155,11 @@ impl Sample<'_> {
         let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
         let guide = self.photons.and_then(|pass| self.take_photons(pass, branch, hit, albedo));
         self.radiance += branch.throughput * albedo * self.strays_on(hit);
-        let pdf_w = |wi: Vec3| match &guide {
-            None => lobe.pdf_w(wi),
-            Some(guide) => lobe.weighted_pdf_w(wi, |direction| guide.relative(direction)),
+        let glow = self.glow(branch.medium, branch.throughput).filter(|glow| glow.is_above(hit.ng));
+        let pdf_w = |wi: Vec3| match (&guide, &glow) {
+            (None, None) => lobe.pdf_w(wi),
+            (None, Some(glow)) => glow.pdf_w(wi, lobe.pdf_w(wi)),
+            (Some(guide), _) => lobe.weighted_pdf_w(wi, |direction| guide.relative(direction)),
         };
         // Beyond the last vertex at which photons are asked for, the light of lamps is theirs.
         let lamps = self.photons.is_none() || branch.lookups_left > 0;
@@ -178,12 +180,15 @@ impl Sample<'_> {
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let wi = match &guide {
-            None => lobe.sample([u[1], u[2]]),
-            Some(guide) => lobe.above(guide.sample([u[1], u[2]])),
+        let u12 = [u[1], u[2]];
+        let wi = match (&guide, &glow) {
+            (None, None) => lobe.sample(u12),
+            (None, Some(glow)) => glow.sample(u12, |u| lobe.sample(u)),
+            (Some(guide), _) => lobe.above(guide.sample(u12)),
         };
         let own = pdf_w(wi);
-        branch.throughput *= if guide.is_some() { albedo * (lobe.pdf_w(wi) / own) } else { albedo };
+        branch.throughput *= albedo;
+        let drawn = if guide.is_some() || glow.is_some() { lobe.pdf_w(wi) / own } else { 1.0 };
         let vertex = LitVertex { position: hit.point.position, pdf_w: own, lamps };
         let looked = match (lit, self.photons) {
             (true, _) => self.looked(branch, vertex, wi),
@@ -193,6 +198,12 @@ impl Sample<'_> {
         };
         branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
+        if glow.is_some() {
+            let fate = branch.interacted(u[3]);
+            branch.throughput *= drawn;
+            return if drawn > 0.0 { fate } else { Fate::Ends };
+        }
+        branch.throughput *= drawn;
         branch.interacted(u[3])
     }
 

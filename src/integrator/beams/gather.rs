@@ -29,6 +29,8 @@ const LOOSE: f64 = 0.02;
 /// Triangles are cut so often, at most.
 const MOST_CUTS: u32 = 8;
 
+/// Media of a greater mean cosine show a glow.
+const FORWARD: f32 = 0.5;
 /// Most rays are within so many times the root of the mean square.
 const SPREADS: f64 = 1.5;
 
@@ -45,7 +47,17 @@ impl Beams {
                 reached[pair.crossed(beam.front).1.0 as usize] = true;
             }
         }
-        Some(Self { of_suns, reached }).filter(|beams| !beams.is_empty())
+        let lit = |(sun, own): &(&Sun, &SunBeams)| !own.beams.is_empty() && sun.power() > 0.0;
+        let brightest = frame.lights.suns.iter().zip(&of_suns).filter(lit);
+        let brightest =
+            brightest.max_by(|a, b| a.0.power().total_cmp(&b.0.power())).map(|(_, own)| own.mean[0]);
+        let shows = |medium: &Medium| {
+            medium.sigma_s.maximum() > 0.0 && medium.phase.mean_cosine().maximum() > FORWARD
+        };
+        let glows = frame.media.iter().zip(&reached);
+        let glows =
+            glows.map(|(medium, is_reached)| brightest.filter(|_| *is_reached && shows(medium))).collect();
+        Some(Self { of_suns, reached, glows }).filter(|beams| !beams.is_empty())
     }
 }
 

@@ -18,6 +18,7 @@
 //! | but those that stand in the shade of something opaque | `shade.rs` |
 //! | where each can send light of the whole disc | `spread.rs` |
 //! | a hierarchy over these, asked for a point, and a first look at what it gives | `index.rs`, `sieve.rs` |
+//! | directions towards the glow around a sun | `glow.rs` |
 //! | all solutions g = 0 in a triangle | `patch.rs`, `roots.rs` |
 //! | the search as a whole | `query.rs` |
 //! | what they bring, and what is in the way | `light.rs` |
@@ -34,6 +35,7 @@
 //! Each sun has beams of its own, in a frame of its own, and a vertex looks for all of them with the same random numbers.
 
 mod gather;
+mod glow;
 mod index;
 mod light;
 mod patch;
@@ -62,6 +64,8 @@ pub struct Beams {
     of_suns: Vec<SunBeams>,
     /// Media that any of these reach, by [`MediumId`]. What photons leave to beams hangs on it too.
     reached: Vec<bool>,
+    /// From where the light of the brightest sun comes in the mean, in the media that show a glow around it.
+    glows: Vec<Option<Vec3>>,
 }
 
 /// Those that bend light of one sun.
@@ -93,6 +97,11 @@ impl Beams {
     /// True where light is looked for in a medium.
     pub(super) fn reach(&self, medium: MediumId) -> bool {
         self.reached[medium.0 as usize]
+    }
+
+    /// From where a medium's glow comes, if it has one.
+    fn glow(&self, medium: MediumId) -> Option<Vec3> {
+        self.glows[medium.0 as usize]
     }
 
     /// Triangles, or pieces of them, through which light is looked for; those whose own normal may be taken for the
