@@ -309,7 +309,7 @@ impl Sample<'_> {
         let lamps = self.photons.is_none();
         let lit = DIRECT && (lamps || self.sky_is_for_paths()) && self.looks_for_lights(branch.medium);
         let led = self.led(branch);
-        let glow = if led.is_none() { self.glow(branch.medium, throughput) } else { None };
+        let glow = if led.is_none() { self.glow_around(branch) } else { None };
         if lit {
             let receiver = Receiver {
                 position: point,

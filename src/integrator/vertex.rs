@@ -155,7 +155,7 @@ impl Sample<'_> {
         let lobe = DiffuseLobe { ns: hit.ns, ng: hit.ng };
         let guide = self.photons.and_then(|pass| self.take_photons(pass, branch, hit, albedo));
         self.radiance += branch.throughput * albedo * self.strays_on(hit);
-        let glow = self.glow(branch.medium, branch.throughput).filter(|glow| glow.is_above(hit.ng));
+        let glow = self.glow_before(branch, hit.ng);
         let pdf_w = |wi: Vec3| match (&guide, &glow) {
             (None, None) => lobe.pdf_w(wi),
             (None, Some(glow)) => glow.pdf_w(wi, lobe.pdf_w(wi)),

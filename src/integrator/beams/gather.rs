@@ -49,8 +49,7 @@ impl Beams {
         }
         let lit = |(sun, own): &(&Sun, &SunBeams)| !own.beams.is_empty() && sun.power() > 0.0;
         let brightest = frame.lights.suns.iter().zip(&of_suns).filter(lit);
-        let brightest =
-            brightest.max_by(|a, b| a.0.power().total_cmp(&b.0.power())).map(|(_, own)| own.mean[0]);
+        let brightest = brightest.max_by(|a, b| a.0.power().total_cmp(&b.0.power())).map(|(_, own)| own.mean);
         let shows = |medium: &Medium| {
             medium.sigma_s.maximum() > 0.0 && medium.phase.mean_cosine().maximum() > FORWARD
         };

@@ -64,8 +64,8 @@ pub struct Beams {
     of_suns: Vec<SunBeams>,
     /// Media that any of these reach, by [`MediumId`]. What photons leave to beams hangs on it too.
     reached: Vec<bool>,
-    /// From where the light of the brightest sun comes in the mean, in the media that show a glow around it.
-    glows: Vec<Option<Vec3>>,
+    /// From where the light of the brightest sun comes, in the media that show a glow around it.
+    glows: Vec<Option<[Vec3; 5]>>,
 }
 
 /// Those that bend light of one sun.
@@ -99,8 +99,8 @@ impl Beams {
         self.reached[medium.0 as usize]
     }
 
-    /// From where a medium's glow comes, if it has one.
-    fn glow(&self, medium: MediumId) -> Option<Vec3> {
+    /// From where the light of a medium's glow comes, if it has one.
+    fn glow(&self, medium: MediumId) -> Option<[Vec3; 5]> {
         self.glows[medium.0 as usize]
     }
 

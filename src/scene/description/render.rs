@@ -52,7 +52,7 @@ impl PhotonDescription {
 
     /// Those of each pass beside beams, which bring little of the light: more would cost more time than they save.
     pub fn count_of_strays(&self, pixels: u32) -> u32 {
-        if self.count == 0 { (pixels / 8).clamp(4096, 1_000_000) } else { self.count }
+        if self.count == 0 { (pixels / 32).clamp(2048, 1_000_000) } else { self.count }
     }
 
     /// Settings that blur half as wide with the noise of these: four times the photons, each over a quarter of the area.
