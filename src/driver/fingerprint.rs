@@ -31,7 +31,7 @@ use crate::sequence::FrameNumber;
 /// It is raised by one with every change after which any scene may have other pixels, by a single bit of one channel;
 /// so a picture or a checkpoint that another build has left is never taken for one of this. Changes that only make floe
 /// faster, or read what was refused, do not count.
-pub const PIXELS: u32 = 6;
+pub const PIXELS: u32 = 7;
 
 /// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -70,3 +70,44 @@ impl Glow<'_> {
         (1.0 - self.share) * own + self.share / LOBES * self.from.map(of_lobe).iter().sum::<f32>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::phase::{HenyeyGreenstein, MediumPhase, PhaseFunction};
+    use crate::sampling::warp;
+    use crate::spectrum::Wavelengths;
+
+    /// 1024 x 1024 cells of equal solid angle. The mixture is normalised; the mean of value over density of what it draws is the
+    /// integral of the value, and that of the cosine to an axis its first moment, with their signs: these hold for its own
+    /// density and for one that it must not follow, within what 2^20 stratified numbers leave (measured: 2e-4).
+    #[test]
+    fn what_is_drawn_towards_the_glow_is_weighed_by_its_density() {
+        let phase = MediumPhase::from(PhaseFunction::HenyeyGreenstein(HenyeyGreenstein { g: 0.9 }));
+        let axis = Vec3::new(0.3, -0.2, 0.9).normalize();
+        let tilted = [[0.0, 0.0], [0.2, 0.0], [-0.2, 0.0], [0.0, 0.3], [0.0, -0.3]];
+        let from = tilted.map(|[x, y]| (axis + Vec3::new(x, y, 0.0)).normalize());
+        let phase = phase.at(&Wavelengths::RGB);
+        for share in [ON_SURFACES, IN_VOLUMES] {
+            let glow = Glow { from, share, phase, throughput: Lanes::ONE };
+            let cosine = |wi: Vec3| wi.z.max(0.0) * std::f32::consts::FRAC_1_PI;
+            let (n, mut norm, mut whole, mut along) = (1024, 0.0_f64, 0.0_f64, 0.0_f64);
+            for i in 0..n * n {
+                let u = [(i % n) as f32 + 0.5, (i / n) as f32 + 0.5].map(|x| x / n as f32);
+                let even = warp::sphere(u);
+                norm += 4.0 * std::f64::consts::PI * f64::from(glow.pdf_w(even, cosine(even)));
+                let wi = glow.sample(u, warp::cosine_hemisphere);
+                let weight = f64::from(cosine(wi) / glow.pdf_w(wi, cosine(wi)));
+                whole += weight;
+                along += weight * f64::from(wi.z);
+            }
+            let [norm, whole, along] = [norm, whole, along].map(|sum| sum / f64::from(n * n));
+            // The mean cosine of the cosine lobe is 2 / 3.
+            assert!((norm - 1.0).abs() < 1e-3, "{share}: {norm}");
+            assert!(
+                (whole - 1.0).abs() < 1e-3 && (along - 2.0 / 3.0).abs() < 1e-3,
+                "{share}: {whole} {along}"
+            );
+        }
+    }
+}

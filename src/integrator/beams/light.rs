@@ -25,7 +25,7 @@ use crate::spectrum::Lanes;
 /// The response to light counts as so much of white at least: it may come from elsewhere than most of it does.
 const LEAST_RESPONSE: f32 = 0.02;
 /// One look is enough for a vertex that returns so much of what an eye path's first white surface does.
-const WORTH_ANOTHER: f32 = 1.0;
+const WORTH_ANOTHER: f32 = 0.25;
 /// Most looks of a vertex.
 const MOST_LOOKS: f32 = 16.0;
 

@@ -266,4 +266,23 @@ mod tests {
         let expected = flux / (swept * d.z);
         assert!((aim.gathered(&pass) / expected - 1.0).abs() < 1e-3, "{} {expected}", aim.gathered(&pass));
     }
+
+    /// A ray back from where a ray goes comes from where that came from, and how its source turns with the place is what central
+    /// differences of step h tell, to h^2 of the third derivative.
+    #[test]
+    fn sources_turn_with_the_place_as_densities_say() {
+        let (frame, patch) = wave();
+        let (uv, h) = (DVec2::new(0.3, 0.25), 1e-5);
+        for eta in [0.75, 1.3] {
+            let aim = Aim { eta, ..aim(&frame, &patch, Vec3::ZERO) };
+            let d = aim.pass(uv).unwrap().bent.direction;
+            let aim = Aim { x: patch.at(uv) + d * (0.7 / d.z), ..aim };
+            assert!((aim.source(uv).unwrap() - aim.to_sun).length() < 1e-14);
+            let by =
+                |step: DVec2| (aim.source(uv + step).unwrap() - aim.source(uv - step).unwrap()) / (2.0 * h);
+            let expected = by(DVec2::X * h).cross(by(DVec2::Y * h)).length();
+            let own = aim.sun_by_place(&aim.pass(uv).unwrap());
+            assert!((own / expected - 1.0).abs() < 1e-7, "{eta}: {own} {expected}");
+        }
+    }
 }

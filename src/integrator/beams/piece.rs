@@ -92,4 +92,20 @@ mod tests {
             }
         }
     }
+
+    /// Points of a grid over the unit square lie in the piece, as many in each quarter of it, within those on the edges.
+    #[test]
+    fn points_of_a_piece_are_even() {
+        let piece = Piece::WHOLE.halves(1)[1].cut()[2];
+        let n = 64;
+        let all = (0..n * n).map(|i| piece.at([i % n, i / n].map(|k| (k as f32 + 0.25) / n as f32)));
+        let all: Vec<DVec2> = all.collect();
+        for (part, share) in piece.cut().iter().map(|part| (*part, 0.25)).chain([(piece, 1.0)]) {
+            let count = all.iter().filter(|point| part.holds(**point, DVec2::new(1.0, 0.3))).count();
+            let expected = share * f64::from(n * n);
+            assert!((count as f64 - expected).abs() <= f64::from(2 * n), "{count} for {expected}");
+        }
+        assert!((4.0 * piece.cut()[3].area() / piece.area() - 1.0).abs() < 1e-12);
+        assert_eq!(piece.area(), 0.5 / 8.0);
+    }
 }
