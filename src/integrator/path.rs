@@ -19,7 +19,7 @@ use super::{EyeSample, FirstHit, PreparedLight, Scattered, Scratch};
 use crate::geometry::Ray;
 use crate::light::balance;
 use crate::optics::medium::MediumId;
-use crate::optics::phase::{Deflection, LanesSample, PhaseLanes};
+use crate::optics::phase::{Deflection, PhaseLanes};
 use crate::sampling::SampleStream;
 use crate::scene::frame::Frame;
 use crate::scene::geometry::SurfaceHit;
@@ -329,26 +329,14 @@ impl Sample<'_> {
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let mut drawn = 1.0;
-        let turned = match (&led, phase) {
-            _ if let Some(glow) = &glow => {
-                let wi = glow.sample([u[1], u[2]], |u| phase.sample(forward, u, throughput).wi);
-                let (value, own) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
-                let pdf_w = glow.pdf_w(wi, own);
-                drawn = own / pdf_w;
-                LanesSample {
-                    wi,
-                    weight: if own > 0.0 { value / own } else { Lanes::ZERO },
-                    pdf_w,
-                    greatest: value.max_element(),
-                }
-            }
-            (Some(led), PhaseLanes::One(phase)) => {
+        let (turned, drawn) = match (&glow, &led, phase) {
+            (Some(glow), ..) => glow.turn(forward, [u[1], u[2]]),
+            (None, Some(led), PhaseLanes::One(phase)) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
                 self.scratch.around.flight = flight;
-                turned.into()
+                (turned.into(), 1.0)
             }
-            _ => phase.sample(forward, [u[1], u[2]], throughput),
+            _ => (phase.sample(forward, [u[1], u[2]], throughput), 1.0),
         };
         if self.photons.is_some() && !photon::is_peak(turned.greatest) {
             branch.lookups_left = 0;

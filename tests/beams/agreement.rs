@@ -82,6 +82,17 @@ pub fn waves() -> TestMesh {
     mesh
 }
 
+fn tank(water: &str, normals: &str, walls: &str) -> String {
+    format!(
+        "[media.water]\nior = 1.33\n{water}\n\
+         [[surfaces]]\nmesh = \"surface.ply\"\nfront = \"air\"\nback = \"water\"\nnormals = \"{normals}\"\n\
+         material = {{ kind = \"dielectric\" }}\n\
+         [[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 0.5 }}\n\
+         [sun]\ndirection = [0.3, 0.1, 0.9]\nangular_diameter = 0.53\nirradiance = 3\n\
+         [camera]\neye = [0, -0.6, 0.7]\ntarget = [0, 0.1, 0]\nvertical_fov = 60\nresolution = [32, 24]\n{walls}"
+    )
+}
+
 /// A floor under waves: its parts are 0.3 m wide, and what photons blur over 0.01 m changes their means by less than their
 /// errors.
 #[test]
@@ -90,16 +101,19 @@ fn a_wavy_tank() {
     let folder = SceneFolder::new().mesh("surface.ply", &waves()).mesh("floor.ply", &floor);
     let (folder, walls) = walled(folder, 1.9, 1.2);
     for normals in ["smooth", "flat"] {
-        let text = format!(
-            "[media.water]\nior = 1.33\nabsorption = 0.2\n\
-             [[surfaces]]\nmesh = \"surface.ply\"\nfront = \"air\"\nback = \"water\"\nnormals = \"{normals}\"\n\
-             material = {{ kind = \"dielectric\" }}\n\
-             [[surfaces]]\nmesh = \"floor.ply\"\nmaterial = {{ kind = \"diffuse\", reflectance = 0.5 }}\n\
-             [sun]\ndirection = [0.3, 0.1, 0.9]\nangular_diameter = 0.53\nirradiance = 3\n\
-             [camera]\neye = [0, -0.6, 0.7]\ntarget = [0, 0.1, 0]\nvertical_fov = 60\nresolution = [32, 24]\n{walls}"
-        );
+        let text = tank("absorption = 0.2", normals, &walls);
         compare(normals, &folder, &text, 0.01, false, [32, 16]);
     }
+}
+
+/// The same in water that shows a glow around the sun: floor and particles send paths towards it.
+#[test]
+fn a_turbid_tank() {
+    let floor = parallelogram(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0);
+    let folder = SceneFolder::new().mesh("surface.ply", &waves()).mesh("floor.ply", &floor);
+    let (folder, walls) = walled(folder, 1.9, 1.2);
+    let water = "absorption = 0.1\nscattering = 1.5\nphase = { kind = \"henyey-greenstein\", g = 0.9 }";
+    compare("turbid", &folder, &tank(water, "smooth", &walls), 0.02, true, [32, 8]);
 }
 
 /// From within a ball of turbid water, up to a black screen in it, so that no eye path turns at the ball.

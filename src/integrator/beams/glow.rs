@@ -13,7 +13,7 @@
 use glam::Vec3;
 
 use super::super::path::{Branch, Sample};
-use crate::optics::phase::{Deflection, PhaseLanes};
+use crate::optics::phase::{Deflection, LanesSample, PhaseLanes};
 use crate::spectrum::Lanes;
 
 /// q of the head on surfaces. In the scene of `tests/bench/hero` 0.4 is as good, and the glow as a whole leaves 0.6 of the time to
@@ -61,6 +61,16 @@ impl Glow<'_> {
         }
         let x = LOBES * below_one(x / self.share);
         self.phase.sample(self.from[x as usize], [x.fract(), y], self.throughput).wi
+    }
+
+    /// How a path goes on at a particle: weighed by its own density alone, and what that is over the mixture's.
+    pub(in crate::integrator) fn turn(&self, forward: Vec3, u: [f32; 2]) -> (LanesSample, f32) {
+        let (phase, throughput) = (&self.phase, self.throughput);
+        let wi = self.sample(u, |u| phase.sample(forward, u, throughput).wi);
+        let (value, own) = phase.value_and_pdf_w(Deflection::between(forward, wi), throughput);
+        let weight = if own > 0.0 { value / own } else { Lanes::ZERO };
+        let pdf_w = self.pdf_w(wi, own);
+        (LanesSample { wi, weight, pdf_w, greatest: value.max_element() }, own / pdf_w)
     }
 
     /// Density of the mixture for a direction of the vertex's own density.

@@ -20,12 +20,12 @@
 //! | a hierarchy over these, asked for a point, and a first look at what it gives | `index.rs`, `sieve.rs` |
 //! | directions towards the glow around a sun | `glow.rs` |
 //! | all solutions g = 0 in a triangle | `patch.rs`, `roots.rs` |
-//! | the search as a whole | `query.rs` |
+//! | the search as a whole: these for a point of the disc, and the one through a point of the triangle | `query.rs` |
 //! | what they bring, and what is in the way | `light.rs` |
 //!
 //! Nishita and Nakamae `[NISHITA94]` follow the volumes that triangles sweep, Walter, Zhao, Holzschuch and Bala `[WALTER09]` the
 //! paths from a point; this is the second for light of one direction. Each vertex draws a point of the disc of its own, so what
-//! goes to infinity at a caustic is smoothed as the disc smooths it. Nothing is blurred and nothing is left from pass to pass.
+//! goes to infinity at a caustic is smoothed as the disc smooths it, and each triangle a point of its own, which bounds it. Nothing is blurred and nothing is left from pass to pass.
 //!
 //! What is found so has one refracting interface between the vertex and the sun, and otherwise only index-matched boundaries.
 //! Light that is bent twice or reflected on its way, as that through meshes that overlap others, is that of photons
