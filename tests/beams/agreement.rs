@@ -111,9 +111,10 @@ fn a_wavy_tank() {
 fn a_turbid_tank() {
     let floor = parallelogram(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0);
     let folder = SceneFolder::new().mesh("surface.ply", &waves()).mesh("floor.ply", &floor);
-    let (folder, walls) = walled(folder, 1.9, 1.2);
+    // They stand where the surface ends: photons would leave the turbid water beyond them at its open sides.
+    let (folder, walls) = walled(folder, 2.0, 1.2);
     let water = "absorption = 0.1\nscattering = 1.5\nphase = { kind = \"henyey-greenstein\", g = 0.9 }";
-    compare("turbid", &folder, &tank(water, "smooth", &walls), 0.02, true, [32, 8]);
+    compare("turbid", &folder, &tank(water, "smooth", &walls), 0.02, true, [64, 16]);
 }
 
 /// From within a ball of turbid water, up to a black screen in it, so that no eye path turns at the ball.

@@ -86,17 +86,31 @@ fn tank(render: &str) -> (SceneFolder, String) {
     (folder, text)
 }
 
-#[test]
-fn beams_add_up() {
-    let (folder, text) = tank("integrator = \"beams\"\n");
-    assert_adds_up("beams", &folder, &text);
-}
-
 /// Means of the parts of a picture, whose random numbers `numbers` tells apart from those of others.
 fn means(mut scene: Prepared, numbers: i64) -> Means {
     scene.sampling.seed.frame = numbers;
     // A blur that stays is the same for all.
     Seeds::render(&with_radius(scene, 0.03), 16, 4, [4, 3]).means()
+}
+
+fn assert_means_add_up(folder: &SceneFolder, text: &str, photons: bool) {
+    for (sum, together, apart) in SUMS {
+        let scene = under(&together, folder, text);
+        let name = format!("{}, {sum}", scene.sampling.integrator.name());
+        assert!(!matches!(scene.sampling.integrator, Integrator::Path(_)), "{name}");
+        assert_eq!(scene.render(1, 1).counters.photons > 0, photons, "{name}: photons");
+        let whole = means(scene, 1);
+        let parts = apart.iter().zip(2..).map(|(sun, k)| means(under(&[sun], folder, text), k));
+        let added = parts.reduce(|a, b| a.into_iter().zip(b).map(plus).collect()).unwrap();
+        assert_agree(&name, &whole, &added, 0.04);
+    }
+}
+
+/// How often a vertex looks, and where it sends paths, goes by the brightest sun.
+#[test]
+fn beams_add_up() {
+    let (folder, text) = tank("integrator = \"beams\"\n");
+    assert_means_add_up(&folder, &text, false);
 }
 
 /// Photons of several suns are other photons; with a ball of glass in the water beams are not without them either.
@@ -110,17 +124,7 @@ fn photons_add_up() {
         let folder = folder.mesh("ball.ply", &sphere(DVec3::new(0.0, 0.3, 0.3), 0.25, 2));
         let ball = "[[surfaces]]\nmesh = \"ball.ply\"\nfront = \"water\"\nback = \"glass\"\n\
                     material = { kind = \"dielectric\" }\n";
-        let text = format!("{ball}{text}");
-        for (sum, together, apart) in SUMS {
-            let scene = under(&together, &folder, &text);
-            let name = format!("{}, {sum}", scene.sampling.integrator.name());
-            assert!(!matches!(scene.sampling.integrator, Integrator::Path(_)), "{name}");
-            assert!(scene.render(1, 1).counters.photons > 0, "{name}: no photons");
-            let whole = means(scene, 1);
-            let parts = apart.iter().zip(2..).map(|(sun, k)| means(under(&[sun], &folder, &text), k));
-            let added = parts.reduce(|a, b| a.into_iter().zip(b).map(plus).collect()).unwrap();
-            assert_agree(&name, &whole, &added, 0.04);
-        }
+        assert_means_add_up(&folder, &format!("{ball}{text}"), true);
     }
 }
 

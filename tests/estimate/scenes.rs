@@ -129,7 +129,7 @@ pub fn scenes() -> Vec<Scene> {
             format!("{}aperture = 0.3\nfocus_distance = 3\n{AT}", path(&[&body("cube", MILK), LAMP]) + VIEW),
         ),
         ("plume of a grid, lamp", all(path(&[&body("cube", plume), LAMP]))),
-        ("stratified sea ball, sun", all(path(&[sea, SUN, SKY]))),
+        ("stratified sea ball, sun", all(path(&[sea, &SUN.replace("= 20", "= 6"), SKY]))),
         ("glowing lava", all(path(&[&body("ball", lava)]))),
         (
             "both branches, clear ball, lamp",
