@@ -329,7 +329,7 @@ impl Sample<'_> {
             let direct = self.direct(&receiver, lamps, response, &mut branch.stream);
             self.radiance += branch.throughput * direct;
         }
-        let (turned, drawn) = match (&glow, &led, phase) {
+        let (turned, own_share) = match (&glow, &led, phase) {
             (Some(glow), ..) => glow.turn(forward, [u[1], u[2]]),
             (None, Some(led), PhaseLanes::One(phase)) => {
                 let (turned, flight) = led.sample(phase, &mut branch.stream);
@@ -351,8 +351,7 @@ impl Sample<'_> {
         branch.arrival = Arrival { specular_from_eye: false, looked };
         (branch.bounces, branch.steps) = (0, 0);
         let fate = branch.goes_on(u[3]);
-        branch.throughput *= drawn;
-        if drawn > 0.0 { fate } else { Fate::Ends }
+        branch.of_mixture(fate, own_share)
     }
 
     /// The path meets nothing any more: it sees the sky, and the discs of suns on a purely specular chain.

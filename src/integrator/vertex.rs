@@ -187,8 +187,7 @@ impl Sample<'_> {
             (Some(guide), _) => lobe.above(guide.sample(u12)),
         };
         let own = pdf_w(wi);
-        branch.throughput *= albedo;
-        let drawn = if guide.is_some() || glow.is_some() { lobe.pdf_w(wi) / own } else { 1.0 };
+        branch.throughput *= if guide.is_some() { albedo * (lobe.pdf_w(wi) / own) } else { albedo };
         let vertex = LitVertex { position: hit.point.position, pdf_w: own, lamps };
         let looked = match (lit, self.photons) {
             (true, _) => self.looked(branch, vertex, wi),
@@ -198,13 +197,8 @@ impl Sample<'_> {
         };
         branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
-        if glow.is_some() {
-            let fate = branch.interacted(u[3]);
-            branch.throughput *= drawn;
-            return if drawn > 0.0 { fate } else { Fate::Ends };
-        }
-        branch.throughput *= drawn;
-        branch.interacted(u[3])
+        let fate = branch.interacted(u[3]);
+        branch.of_mixture(fate, if glow.is_some() { lobe.pdf_w(wi) / own } else { 1.0 })
     }
 
     /// Adds the light of photons at a diffuse surface where the path asks for them; tells how the directions of final

@@ -8,8 +8,8 @@
 //! * A picture of the sky is importance sampled, and so is a clear sky ([`clear_sky`]), which comes from the same sun and
 //!   air as the sun's beam ([`atmosphere`]).
 //! * A sun's disc is so small that chance never finds it: it is counted by next-event estimation, and on paths that
-//!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is left out. A vertex
-//!   looks for every sun, with the same random numbers.
+//!   have met nothing but specular surfaces since the eye. Its light through a refracting interface is that of beams and
+//!   photons, where the integrator has these. A vertex looks for every sun, with the same random numbers.
 //! * Emitting triangles are sampled by area.
 //! * Beneath a refracting interface directions are drawn in which compact lights are likely to be seen ([`beneath`]).
 //!

@@ -3,9 +3,10 @@
 //! A triangle that is long, or whose normals turn much, lights a thin strip across a wide box. It is cut into halves, each
 //! with a box of its own, as long as these cover much less.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::glow::{self, Directions};
 use super::index::{Index, Reach, WIDTH};
 use super::patch::SunFrame;
 use super::piece::Piece;
@@ -29,8 +30,6 @@ const LOOSE: f64 = 0.02;
 /// Triangles are cut so often, at most.
 const MOST_CUTS: u32 = 8;
 
-/// Media of a greater mean cosine show a glow.
-const FORWARD: f32 = 0.5;
 /// Most rays are within so many times the root of the mean square.
 const SPREADS: f64 = 1.5;
 
@@ -47,15 +46,7 @@ impl Beams {
                 reached[pair.crossed(beam.front).1.0 as usize] = true;
             }
         }
-        let lit = |(sun, own): &(&Sun, &SunBeams)| !own.beams.is_empty() && sun.power() > 0.0;
-        let brightest = frame.lights.suns.iter().zip(&of_suns).filter(lit);
-        let brightest = brightest.max_by(|a, b| a.0.power().total_cmp(&b.0.power())).map(|(_, own)| own.mean);
-        let shows = |medium: &Medium| {
-            medium.sigma_s.maximum() > 0.0 && medium.phase.mean_cosine().maximum() > FORWARD
-        };
-        let glows = frame.media.iter().zip(&reached);
-        let glows =
-            glows.map(|(medium, is_reached)| brightest.filter(|_| *is_reached && shows(medium))).collect();
+        let glows = glow::of_media(frame, &of_suns, &reached);
         Some(Self { of_suns, reached, glows }).filter(|beams| !beams.is_empty())
     }
 }
@@ -303,7 +294,7 @@ impl<'a> Gatherer<'a> {
 }
 
 /// Directions from which rays of a mean slope come, and of those that are as far from it as most.
-fn beams_come_from(sun: &SunFrame, mean: DVec2, spread: DVec2) -> [Vec3; 5] {
+fn beams_come_from(sun: &SunFrame, mean: DVec2, spread: DVec2) -> Directions {
     let [s, t] = [DVec2::X, DVec2::Y].map(|axis| SPREADS * spread * axis);
     [mean, mean + s, mean - s, mean + t, mean - t].map(|slope| -sun.world(slope.extend(1.0).normalize()))
 }

@@ -12,24 +12,51 @@
 
 use glam::Vec3;
 
-use super::super::path::{Branch, Sample};
+use super::super::path::{Branch, Fate, Sample};
+use super::SunBeams;
+use crate::light::Sun;
+use crate::optics::medium::Medium;
 use crate::optics::phase::{Deflection, LanesSample, PhaseLanes};
+use crate::scene::frame::Frame;
 use crate::spectrum::Lanes;
 
+/// Media of a greater mean cosine show a glow.
+const FORWARD: f32 = 0.5;
 /// q of the head on surfaces. In the scene of `tests/bench/hero` 0.4 is as good, and the glow as a whole leaves 0.6 of the time to
 /// equal error.
 const ON_SURFACES: f32 = 0.3;
 /// q in volumes, whose own directions lead to the glow more often; 0.25 is worse by a tenth.
 const IN_VOLUMES: f32 = 0.1;
-/// Directions of light.
-const LOBES: f32 = 5.0;
+/// From where light comes: in the mean, and from where most of it does on each side.
+pub(super) type Directions = [Vec3; LOBES];
+const LOBES: usize = 5;
 
 /// How directions towards the glow are drawn.
 pub(in crate::integrator) struct Glow<'a> {
-    from: [Vec3; LOBES as usize],
+    from: Directions,
     share: f32,
     phase: PhaseLanes<'a>,
     throughput: Lanes,
+}
+
+/// From where the light of the brightest sun comes, in those of the media that its beams reach which show a glow around it.
+pub(super) fn of_media(frame: &Frame, of_suns: &[SunBeams], reached: &[bool]) -> Vec<Option<Directions>> {
+    let lit = |(sun, own): &(&Sun, &SunBeams)| !own.beams.is_empty() && sun.power() > 0.0;
+    let brightest = frame.lights.suns.iter().zip(of_suns).filter(lit);
+    let brightest = brightest.max_by(|a, b| a.0.power().total_cmp(&b.0.power())).map(|(_, own)| own.mean);
+    let shows =
+        |medium: &Medium| medium.sigma_s.maximum() > 0.0 && medium.phase.mean_cosine().maximum() > FORWARD;
+    let media = frame.media.iter().zip(reached);
+    media.map(|(medium, is_reached)| brightest.filter(|_| *is_reached && shows(medium))).collect()
+}
+
+impl Branch {
+    /// Roulette has been played for what the path would be alone; its own density over that of the mixture weighs it then.
+    #[inline]
+    pub(in crate::integrator) fn of_mixture(&mut self, fate: Fate, own_share: f32) -> Fate {
+        self.throughput *= own_share;
+        if own_share > 0.0 { fate } else { Fate::Ends }
+    }
 }
 
 impl<'a> Sample<'a> {
@@ -59,7 +86,7 @@ impl Glow<'_> {
         if x >= self.share {
             return own([below_one((x - self.share) / (1.0 - self.share)), y]);
         }
-        let x = LOBES * below_one(x / self.share);
+        let x = LOBES as f32 * below_one(x / self.share);
         self.phase.sample(self.from[x as usize], [x.fract(), y], self.throughput).wi
     }
 
@@ -77,7 +104,7 @@ impl Glow<'_> {
     pub(in crate::integrator) fn pdf_w(&self, wi: Vec3, own: f32) -> f32 {
         let of_lobe =
             |from: Vec3| self.phase.value_and_pdf_w(Deflection::between(from, wi), self.throughput).1;
-        (1.0 - self.share) * own + self.share / LOBES * self.from.map(of_lobe).iter().sum::<f32>()
+        (1.0 - self.share) * own + self.share / LOBES as f32 * self.from.map(of_lobe).iter().sum::<f32>()
     }
 }
 

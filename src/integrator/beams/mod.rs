@@ -25,7 +25,8 @@
 //!
 //! Nishita and Nakamae `[NISHITA94]` follow the volumes that triangles sweep, Walter, Zhao, Holzschuch and Bala `[WALTER09]` the
 //! paths from a point; this is the second for light of one direction. Each vertex draws a point of the disc of its own, so what
-//! goes to infinity at a caustic is smoothed as the disc smooths it, and each triangle a point of its own, which bounds it. Nothing is blurred and nothing is left from pass to pass.
+//! goes to infinity at a caustic is smoothed as the disc smooths it, and a point of each triangle too, which bounds it. Nothing
+//! is blurred and nothing is left from pass to pass.
 //!
 //! What is found so has one refracting interface between the vertex and the sun, and otherwise only index-matched boundaries.
 //! Light that is bent twice or reflected on its way, as that through meshes that overlap others, is that of photons
@@ -46,12 +47,13 @@ mod shade;
 mod sieve;
 mod spread;
 
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 
 use crate::optics::medium::MediumId;
 pub use query::Searcher;
 pub(super) use query::Ways;
 
+use glow::Directions;
 use index::Index;
 use patch::SunFrame;
 use piece::Piece;
@@ -65,7 +67,7 @@ pub struct Beams {
     /// Media that any of these reach, by [`MediumId`]. What photons leave to beams hangs on it too.
     reached: Vec<bool>,
     /// From where the light of the brightest sun comes, in the media that show a glow around it.
-    glows: Vec<Option<[Vec3; 5]>>,
+    glows: Vec<Option<Directions>>,
 }
 
 /// Those that bend light of one sun.
@@ -76,7 +78,7 @@ struct SunBeams {
     shear: DVec2,
     beams: Vec<Beam>,
     /// From where light comes in the mean, and from where most of it does on each side.
-    mean: [Vec3; 5],
+    mean: Directions,
     /// A first look at eight each.
     sieves: Vec<Sieves>,
     index: Index,
@@ -100,7 +102,7 @@ impl Beams {
     }
 
     /// From where the light of a medium's glow comes, if it has one.
-    fn glow(&self, medium: MediumId) -> Option<[Vec3; 5]> {
+    fn glow(&self, medium: MediumId) -> Option<Directions> {
         self.glows[medium.0 as usize]
     }
 

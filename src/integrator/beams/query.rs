@@ -55,7 +55,8 @@ pub(in crate::integrator) struct Way {
     pub(super) root: Root,
     /// Direction to where on the disc it leads, in the frame of the sun.
     pub(super) to_sun: DVec3,
-    /// Irradiance across the ray at the vertex over that across the sun's light, without what is lost, times the weight of how it was found.
+    /// Irradiance across the ray at the vertex over that across the sun's light, without what is lost, times its weight by the
+    /// balance heuristic.
     pub(super) gathered: f64,
     /// Index on the side of the sun over that beyond.
     pub(super) eta: f32,
@@ -135,7 +136,8 @@ fn through<'a>(aim: &Aim<'a>, piece: &Piece, query: &Query) -> Option<(Aim<'a>, 
     is_in_disc.then(|| aim.pass(uv)).flatten().map(|pass| (aim, Root { uv, pass }))
 }
 
-/// The weight of a way by the balance heuristic, (1) over the sum of (1) and (2); 1 behind a flat triangle, where light gathers nowhere.
+/// The weight of a way by the balance heuristic, (1) over the sum of (1) and (2); 1 behind a flat triangle, where light gathers
+/// nowhere.
 fn share(aim: &Aim, pass: &Pass, piece: &Piece, query: &Query) -> f64 {
     if aim.patch.is_flat() {
         return 1.0;
@@ -145,8 +147,8 @@ fn share(aim: &Aim, pass: &Pass, piece: &Piece, query: &Query) -> f64 {
     by_disc / (by_disc + by_place)
 }
 
-/// Searches as paths do, to be timed: for light of the middle of the first sun's disc, when the shutter opens, at indices of the middle of the
-/// wavelengths.
+/// Searches as paths do, to be timed: for light of the middle of the first sun's disc, when the shutter opens, at indices of
+/// the middle of the wavelengths.
 #[derive(Debug)]
 pub struct Searcher<'a> {
     frame: &'a Frame,
