@@ -1,33 +1,23 @@
 //! Beams and photons find the same light.
 
-use floe::integrator::Integrator;
 use glam::DVec3;
 
 use crate::common::mesh::{TestMesh, parallelogram, sphere};
 use crate::common::render::Prepared;
 use crate::common::scene::SceneFolder;
-use crate::seeds::with_radius;
+use crate::seeds::{self, with_radius};
 use crate::walled;
 
 /// Photons that are spread over a radius which does not shrink.
 fn by_photons(folder: &SceneFolder, text: &str, radius: f32) -> Prepared {
     let settings = "[render]\nintegrator = \"photon\"\nphotons = { count = 100000, final_gather = false }\n";
-    let mut scene = folder.scene(&format!("{text}{settings}"));
-    let Integrator::Photon(mapper) = &mut scene.sampling.integrator else { panic!("no photons") };
-    mapper.settings.radius = Some(radius);
-    mapper.settings.volume_radius = Some(radius);
-    mapper.settings.shrink = 1.0;
-    scene
+    with_radius(folder.scene(&format!("{text}{settings}")), radius)
 }
 
 /// Means of 4 x 3 parts of a picture, one for each of four seeds.
 fn parts(scene: &Prepared, samples: u32) -> Vec<Vec<f64>> {
-    let of_seed = |seed| {
-        let picture = scene.render(samples, seed);
-        let size = [picture.image.width / 4, picture.image.height / 3];
-        let corners = (0..3).flat_map(|j| (0..4).map(move |i| [i * size[0], j * size[1]]));
-        corners.map(|corner| picture.block_mean(corner, size).0.x).collect()
-    };
+    let of_seed =
+        |seed| seeds::parts(&scene.render(samples, seed), [4, 3]).iter().map(|mean| mean.x).collect();
     (1..=4).map(of_seed).collect()
 }
 

@@ -3,14 +3,20 @@
 
 use std::path::PathBuf;
 
+use floe::film::Pixel;
+use floe::spectrum::luminance::luminance_f64;
+use floe::study::TemporalErrors;
 use glam::DVec3;
 
 use crate::common::render::{Prepared, Rendered};
 use crate::common::scene::SceneFolder;
+use crate::seeds::Seeds;
 
 const SUN: &str = "[sun]\ndirection = [-0.5486301348591981, -0.24937733402690823, 0.7980074688861064]\n\
                    angular_diameter = 0.53\nirradiance = [3.0, 2.85, 2.6]\n";
 const SEEDS: u64 = 4;
+/// Pictures that `floe study` takes in at once.
+const WINDOW: u64 = 8;
 
 /// The scene with some of its text replaced; its means are those of any resolution.
 fn hero(resolution: [u32; 2], changes: &[(&str, &str)]) -> Prepared {
@@ -29,11 +35,7 @@ fn hero(resolution: [u32; 2], changes: &[(&str, &str)]) -> Prepared {
 
 /// Mean of the picture over seeds, and its standard error by their spread.
 fn mean(name: &str, scene: &Prepared, samples: u32) -> (DVec3, DVec3) {
-    let means: Vec<DVec3> = (1..=SEEDS).map(|seed| scene.render(samples, seed).mean().0).collect();
-    let n = SEEDS as f64;
-    let mean = means.iter().sum::<DVec3>() / n;
-    let squares = means.iter().map(|m| (*m - mean) * (*m - mean)).sum::<DVec3>();
-    let se = (squares / (n * (n - 1.0))).map(f64::sqrt);
+    let (mean, se) = Seeds::render(scene, samples, SEEDS, [1, 1]).means()[0];
     println!("{name}: {mean:.5} +- {se:.5}");
     (mean, se)
 }
@@ -74,35 +76,21 @@ fn hero_under_a_wide_sun() {
     assert!(z.abs().cmple(DVec3::splat(3.0)).all(), "{sun} +- {se}: {z}");
 }
 
-fn luminance(picture: &Rendered, x: u32, y: u32) -> f64 {
-    picture.rgb(x, y).dot(DVec3::new(0.2126, 0.7152, 0.0722))
-}
-
 /// What a screen shows of a luminance, from 0 to 1, coded as sRGB.
 fn shown(luminance: f64) -> f64 {
     let linear = luminance.min(1.0);
     if linear < 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
-/// How many pixels of some pictures have an error beyond eight standard deviations, the root of the mean square of the errors of
-/// their neighbours within two columns and rows, and more than a hundredth of white, as `floe study` counts fireflies.
+/// The share of fireflies among the pixels of some pictures, as `floe study` counts them.
 fn fireflies(pictures: &[Rendered], truth: &Rendered, coded: impl Fn(f64) -> f64) -> f64 {
-    let [width, height] = [truth.image.width, truth.image.height];
-    let (mut count, mut pixels) = (0, 0);
+    let coded = |pixel: &Pixel| coded(luminance_f64(pixel.rgb.as_dvec3()));
+    let mut errors = TemporalErrors::new(truth.image.width as usize, truth.image.height as usize);
     for picture in pictures {
-        let square =
-            |x: u32, y: u32| (coded(luminance(picture, x, y)) - coded(luminance(truth, x, y))).powi(2);
-        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            let rows = y.saturating_sub(2)..(y + 3).min(height);
-            let columns = || x.saturating_sub(2)..(x + 3).min(width);
-            let around = rows.flat_map(|j| columns().map(move |i| (i, j))).filter(|at| *at != (x, y));
-            let around: Vec<f64> = around.map(|(i, j)| square(i, j)).collect();
-            let variance = around.iter().sum::<f64>() / around.len() as f64;
-            count += u32::from(square(x, y) > (64.0 * variance).max(1e-4));
-            pixels += 1;
-        }
+        let pairs = picture.image.pixels.iter().zip(&truth.image.pixels);
+        errors.push(pairs.map(|(own, true_one)| (coded(own) - coded(true_one)) as f32).collect());
     }
-    f64::from(count) / f64::from(pixels)
+    errors.metrics().unwrap().fireflies
 }
 
 /// Of what a screen shows, at 64 samples; of luminance itself there are more.
@@ -111,7 +99,7 @@ fn fireflies(pictures: &[Rendered], truth: &Rendered, coded: impl Fn(f64) -> f64
 fn hero_has_few_fireflies() {
     let scene = hero([160, 90], &[]);
     let truth = scene.render(512, 9);
-    let pictures: Vec<Rendered> = (1..=SEEDS).map(|seed| scene.render(64, seed)).collect();
+    let pictures: Vec<Rendered> = (1..=WINDOW).map(|seed| scene.render(64, seed)).collect();
     let [seen, linear] = [fireflies(&pictures, &truth, shown), fireflies(&pictures, &truth, |l| l)];
     println!("fireflies: {seen:.1e} of the pixels on a screen, {linear:.1e} of luminance");
     assert!(seen < 1e-4, "{seen}, {linear}");

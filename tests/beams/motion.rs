@@ -4,9 +4,8 @@ use glam::DVec3;
 
 use crate::common::mesh::{Moving, TestMesh, parallelogram};
 use crate::common::numbers::SplitMix;
-use crate::common::render::Rendered;
 use crate::common::scene::SceneFolder;
-use crate::seeds::{Means, assert_agree};
+use crate::seeds::{Seeds, assert_agree, parts};
 use crate::walled;
 
 const SHUTTER: f64 = 0.6;
@@ -41,23 +40,6 @@ fn surface(height: impl Fn(DVec3) -> f64) -> TestMesh {
     mesh
 }
 
-fn blocks(picture: &Rendered) -> Vec<DVec3> {
-    let size = [picture.image.width / 4, picture.image.height / 3];
-    let corners = (0..3).flat_map(|j| (0..4).map(move |i| [i * size[0], j * size[1]]));
-    corners.map(|corner| picture.block_mean(corner, size).0).collect()
-}
-
-/// Mean and standard error of each block over pictures.
-fn means(pictures: &[Vec<DVec3>]) -> Means {
-    let n = pictures.len() as f64;
-    let of_block = |block: usize| {
-        let mean = pictures.iter().map(|p| p[block]).sum::<DVec3>() / n;
-        let squares = pictures.iter().map(|p| (p[block] - mean) * (p[block] - mean)).sum::<DVec3>();
-        (mean, (squares / (n * (n - 1.0))).map(f64::sqrt))
-    };
-    (0..pictures[0].len()).map(of_block).collect()
-}
-
 fn text(walls: &str, normals: &str, shutter: f64) -> String {
     format!(
         "[media.water]\nior = 1.33\n\
@@ -88,7 +70,7 @@ fn moments(
         let (folder, walls) = folder();
         let folder = folder.mesh("surface_0001.ply", &water.clone().moved(velocity, seconds));
         let picture = folder.scene(&text(&walls, normals, 0.0)).render(2, random.next());
-        for (sum, mean) in sum.iter_mut().zip(blocks(&picture)) {
+        for (sum, mean) in sum.iter_mut().zip(parts(&picture, [4, 3])) {
             *sum += mean / f64::from(MOMENTS);
         }
     }
@@ -107,7 +89,7 @@ fn assert_is_the_mean_of_its_moments(
     let folder = folder.file("surface_0001.ply", water.moving_ply(velocity).as_bytes());
     let render = |shutter: f64, samples: u32| {
         let scene = folder.scene(&text(&walls, normals, shutter));
-        means(&(1..=REPEATS).map(|seed| blocks(&scene.render(samples, seed))).collect::<Vec<_>>())
+        Seeds::render(&scene, samples, REPEATS, [4, 3]).means()
     };
     let (blurred, still) = (render(SHUTTER, 64), render(0.0, 64));
     let mut random = SplitMix(7);
@@ -116,7 +98,7 @@ fn assert_is_the_mean_of_its_moments(
     let apart = apart.fold(0.0, f64::max);
     println!("{name}, {normals}: a block of the still picture is {apart:.2} off");
     assert!(apart > 0.1, "{name}: the motion shows too little: {apart}");
-    assert_agree(&format!("{name}, {normals}"), &blurred, &means(&by_hand), 0.02);
+    assert_agree(&format!("{name}, {normals}"), &blurred, &Seeds(by_hand).means(), 0.02);
 }
 
 /// Waves that move on by a fifth of their length, and rise.

@@ -7,7 +7,7 @@ use crate::common::render::{Prepared, Rendered};
 
 /// Means of the parts of a picture, one for each seed.
 #[derive(Clone, Debug)]
-pub struct Seeds(Vec<Vec<DVec3>>);
+pub struct Seeds(pub Vec<Vec<DVec3>>);
 
 /// Mean and standard error of each part of a picture.
 pub type Means = Vec<(DVec3, DVec3)>;
@@ -41,7 +41,8 @@ impl Seeds {
     }
 }
 
-fn parts(picture: &Rendered, [columns, rows]: [u32; 2]) -> Vec<DVec3> {
+/// Means of `columns` x `rows` parts of a picture, row by row.
+pub fn parts(picture: &Rendered, [columns, rows]: [u32; 2]) -> Vec<DVec3> {
     let size = [picture.image.width / columns, picture.image.height / rows];
     let corners = (0..rows).flat_map(|j| (0..columns).map(move |i| [i * size[0], j * size[1]]));
     corners.map(|corner| picture.block_mean(corner, size).0).collect()
