@@ -67,6 +67,9 @@ pub struct WatchArguments {
     #[cfg(feature = "serve")]
     #[arg(long, value_name = "ADDRESS", requires = "serve", default_value = "127.0.0.1")]
     serve_address: std::net::IpAddr,
+    /// Refused with a reason
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    shard: Option<String>,
     /// Only warnings, errors and the summary
     #[arg(long, short)]
     quiet: bool,
@@ -84,6 +87,14 @@ enum Queue {
 
 /// Renders what comes and says what became of it.
 pub fn run(arguments: &WatchArguments) -> Exit {
+    // Which place a frame has is not known while others come.
+    if arguments.shard.is_some() {
+        say(
+            "error: --shard: a watch draws every frame that comes; on several machines run `floe render --resume --shard \
+             I/N` on each, and again when there are more frames",
+        );
+        return Exit::Usage;
+    }
     let interrupt = Interrupt::default();
     #[cfg(unix)]
     super::signals::obey(&interrupt);
