@@ -4,7 +4,7 @@
 //! It holds what the pictures must not: run times, rays, and how often something rare happened.
 
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -215,7 +215,7 @@ impl Ledger {
         &self.path
     }
 
-    /// Appends a line in one write.
+    /// Appends a line in one write. What a full disk or a dead machine left of the line before it stays a line of its own.
     ///
     /// # Errors
     /// [`RenderError::CannotWrite`], such as when the disk is full.
@@ -223,12 +223,47 @@ impl Ledger {
         let write = || {
             let mut line = serde_json::to_vec(record)?;
             line.push(b'\n');
-            self.open()?.write_all(&line)
+            let mut file = self.open()?;
+            if !ends_a_line(&mut file)? {
+                line.insert(0, b'\n');
+            }
+            file.write_all(&line)
         };
         write().map_err(|source| RenderError::CannotWrite { path: self.path.clone(), source })
     }
 
     fn open(&self) -> std::io::Result<std::fs::File> {
-        std::fs::OpenOptions::new().create(true).append(true).open(&self.path)
+        std::fs::OpenOptions::new().create(true).read(true).append(true).open(&self.path)
+    }
+}
+
+fn ends_a_line(file: &mut std::fs::File) -> std::io::Result<bool> {
+    if file.seek(SeekFrom::End(0))? == 0 {
+        return Ok(true);
+    }
+    let mut last = [0];
+    file.seek(SeekFrom::End(-1))?;
+    file.read_exact(&mut last)?;
+    Ok(last == *b"\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_a_line_does_not_spoil_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        let ledger = Ledger::beside(&folder.path().join("a.exr"), "2/3".parse().ok()).unwrap();
+        assert!(ledger.path().ends_with("ledger.2.jsonl"));
+        let append = || ledger.append(&FrameRecord::failed("7".into(), None, "a.exr".into())).unwrap();
+        append();
+        ledger.open().unwrap().write_all(b"{\"frame\":\"8\",\"sta").unwrap();
+        append();
+        append();
+        let text = std::fs::read_to_string(ledger.path()).unwrap();
+        let lines: Vec<bool> =
+            text.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).is_ok()).collect();
+        assert_eq!(lines, [true, false, true, true], "{text}");
     }
 }

@@ -33,6 +33,7 @@ pub mod filter;
 pub mod frame_image;
 pub mod halves;
 mod local_luminance;
+mod maker;
 pub mod metadata;
 pub mod png;
 #[cfg(test)]

@@ -4,16 +4,21 @@
 //! destination's name in one step. A reader, a crash or a full disk never leaves half a picture behind. The file gets
 //! the rights of an ordinary new file (0666 less the umask), not those of a private temporary one.
 //!
-//! A process that is killed leaves its temporary file. Writers hold a lock on theirs, which the system takes from the
-//! dead, so [`remove_abandoned`] knows which ones nobody will finish. Where a file system has no locks, all are left.
+//! A process that is killed leaves its temporary file. Its name tells who writes it, so [`remove_abandoned`] knows which
+//! ones nobody will finish: those of the dead of this machine, and of other machines those that are [`OLD`].
 
-use std::fs::{self, File};
+use std::fs::{self, DirEntry, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile};
 
 use super::error::FilmError;
+use super::maker::{Maker, SUFFIX, is_temporary, maker_of};
+
+/// A file that nothing was written to for so long is not being written, whatever the clocks of two machines say.
+const OLD: Duration = Duration::from_secs(24 * 3600);
 
 /// A file that is on the disk but has not its name yet; dropping it removes it.
 #[derive(Debug)]
@@ -42,7 +47,7 @@ impl StagedFile {
         let folder = folder_of(destination);
         fs::create_dir_all(folder)
             .map_err(|source| FilmError::CannotCreate { path: folder.to_path_buf(), source })?;
-        let mut temporary = locked_file(folder)
+        let mut temporary = temporary_file(folder)
             .map_err(|source| FilmError::CannotCreate { path: destination.to_path_buf(), source })?;
         write(temporary.as_file_mut())
             .and_then(|()| temporary.flush())
@@ -77,21 +82,41 @@ pub fn write_atomically(destination: &Path, bytes: &[u8]) -> Result<(), FilmErro
     StagedFile::new(destination, bytes)?.commit()
 }
 
-/// Removes the temporary files in the folder of a picture whose writers are dead.
+/// Removes the temporary files in the folder of a picture that nobody will finish.
 pub fn remove_abandoned(picture: &Path) {
     let Ok(entries) = fs::read_dir(folder_of(picture)) else { return };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let is_temporary =
-            name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
-        if is_temporary
-            && let Ok(file) = File::open(entry.path())
-            && file.try_lock().is_ok()
-        {
-            // The lock is held meanwhile: a writer that has just made the file finds out in `locked_file`.
-            let _ = fs::remove_file(entry.path());
-        }
+    for entry in entries.flatten().filter(is_abandoned) {
+        let _ = fs::remove_file(entry.path());
     }
+}
+
+fn is_abandoned(entry: &DirEntry) -> bool {
+    let name = entry.file_name();
+    let Some(name) = name.to_str().filter(|name| is_temporary(name)) else { return false };
+    match maker_of(name) {
+        // Of no version that tells who it is.
+        None => true,
+        Some(maker) if maker == Maker::this() => false,
+        Some(maker) => is_ours(entry) && maker.is_dead() || is_old(entry),
+    }
+}
+
+/// Whether a file is of this user: processes of others may be hidden.
+#[cfg(target_os = "linux")]
+fn is_ours(entry: &DirEntry) -> bool {
+    use std::os::linux::fs::MetadataExt;
+    let users = [fs::metadata("/proc/self"), entry.metadata()].map(|found| found.map(|found| found.st_uid()));
+    matches!(users, [Ok(us), Ok(maker)] if us == maker)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_ours(_: &DirEntry) -> bool {
+    true
+}
+
+fn is_old(entry: &DirEntry) -> bool {
+    let written = entry.metadata().and_then(|found| found.modified());
+    written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > OLD))
 }
 
 fn folder_of(file: &Path) -> &Path {
@@ -101,24 +126,10 @@ fn folder_of(file: &Path) -> &Path {
     }
 }
 
-/// A temporary file with a lock on it.
-fn locked_file(folder: &Path) -> std::io::Result<NamedTempFile> {
-    loop {
-        let file = temporary_file(folder)?;
-        // Without locks nobody removes anything.
-        let is_locked = file.as_file().lock().is_ok();
-        if !is_locked || file.path().exists() {
-            return Ok(file);
-        }
-    }
-}
-
-const PREFIX: &str = ".floe-";
-const SUFFIX: &str = ".tmp";
-
 fn temporary_file(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
+    let prefix = Maker::this().prefix();
+    builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -179,18 +190,34 @@ mod tests {
         assert_eq!(entries(folder.path()), ["shot.exr"]);
     }
 
+    /// Of another machine nobody knows who is dead, but a day is long.
+    #[cfg(target_os = "linux")]
     #[test]
-    fn only_the_files_of_the_dead_are_removed() {
+    fn only_what_nobody_will_finish_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let picture = folder.path().join("shot.exr");
         let alive = StagedFile::new(&picture, b"alive").unwrap();
-        for name in [".floe-dead.tmp", ".floe-other", "floe-.tmp", ".other.tmp"] {
+        let own = alive.path().file_name().unwrap().to_str().unwrap().to_owned();
+        let this = Maker::this().to_string();
+        let (machine, _) = this.split_once('-').unwrap();
+        // Numbers of processes end before 2^22, and none starts at 0.
+        let dead = format!(".floe-{machine}-4194305-7-a.tmp");
+        let again = format!(".floe-{machine}-{}-0-a.tmp", std::process::id());
+        let [elsewhere, old] = ["b", "c"].map(|name| format!(".floe-0011223344556677-1-2-{name}.tmp"));
+        for name in
+            [&*dead, &again, &elsewhere, &old, ".floe-nobody.tmp", ".floe-other", "floe-.tmp", ".other.tmp"]
+        {
             fs::write(folder.path().join(name), b"").unwrap();
         }
+        let yesterday = std::time::SystemTime::now() - OLD - Duration::from_secs(1);
+        File::options().write(true).open(folder.path().join(&old)).unwrap().set_modified(yesterday).unwrap();
         remove_abandoned(&picture);
-        assert_eq!(entries(folder.path()).len(), 4, "{:?}", entries(folder.path()));
+        let mut left =
+            vec![own, elsewhere.clone(), ".floe-other".into(), "floe-.tmp".into(), ".other.tmp".into()];
+        left.sort();
+        assert_eq!(entries(folder.path()), left);
         alive.commit().unwrap();
-        assert_eq!(entries(folder.path()), [".floe-other", ".other.tmp", "floe-.tmp", "shot.exr"]);
+        assert_eq!(fs::read(&picture).unwrap(), b"alive");
         remove_abandoned(&folder.path().join("no such folder/shot.exr"));
     }
 

@@ -5,6 +5,8 @@ mod accumulation;
 mod command;
 mod fingerprint;
 #[cfg(unix)]
+mod impatient;
+#[cfg(unix)]
 mod interrupted;
 mod numbers;
 mod pictures;
@@ -14,3 +16,5 @@ mod small;
 mod status;
 #[cfg(unix)]
 mod stopping;
+#[cfg(unix)]
+mod together;

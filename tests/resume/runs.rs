@@ -149,7 +149,7 @@ fn frames_that_cannot_be_read_are_told_as_ever() {
     outcome.says(&["frame 2: ", "frame_0002.ply"]).prints(&["2 of 3 frames were there already (1,3)\n"]);
 }
 
-/// Files that others are writing have a lock; what has none was left by the dead.
+/// Their names say who writes them; what nobody does was left by the dead.
 #[test]
 fn files_of_dead_runs_are_removed() {
     let folder = rendered();
