@@ -3,7 +3,8 @@
 //! An entry has the name of the SHA-256 of all that it follows from: radii, numbers, indices and coefficients at the
 //! wavelengths used, and the version of what computes it. It begins with the SHA-256 of its name and content, so one that is
 //! damaged, cut short or renamed is noticed and computed anew. It is written under another name first and then takes its own
-//! in one step: any number of processes may share a folder. A folder that is missing or cannot be written is no error.
+//! in one step: any number of processes may share a folder. A folder that is missing or cannot be written is no error, and
+//! nothing goes into the home of the user, which nodes of a farm may not have.
 
 use std::ffi::OsString;
 use std::fs;
@@ -14,8 +15,8 @@ use sha2::{Digest, Sha256};
 
 use super::{MixtureError, Scattering};
 
-/// The variable that names the folder.
-const VARIABLE: &str = "FLOE_CACHE";
+/// The variable that names the folder, and the one that names the folder of all caches.
+const VARIABLES: [&str; 2] = ["FLOE_CACHE", "XDG_CACHE_HOME"];
 /// Bytes of a SHA-256.
 const CHECKSUM: usize = 32;
 /// No entry is longer.
@@ -41,16 +42,19 @@ impl Cache {
         Self { folder: Some(folder.to_path_buf()) }
     }
 
-    /// The folder that `FLOE_CACHE` names (`off`: none), else one of this user's among the temporary files.
+    /// The folder that `FLOE_CACHE` names (`off`: none), else `floe` in the one that `XDG_CACHE_HOME` names, else one of
+    /// this user's among the temporary files.
     pub fn of_user() -> Self {
-        Self::named(std::env::var_os(VARIABLE), &std::env::temp_dir())
+        Self::named(VARIABLES.map(std::env::var_os), &std::env::temp_dir())
     }
 
-    /// That of a value of the variable.
-    fn named(value: Option<OsString>, temporary: &Path) -> Self {
-        match value {
-            Some(value) if value == "off" => Self::off(),
-            Some(value) if !value.is_empty() => Self::in_folder(Path::new(&value)),
+    /// That of values of the variables.
+    fn named([own, all]: [Option<OsString>; 2], temporary: &Path) -> Self {
+        match (own, all.map(PathBuf::from)) {
+            (Some(own), _) if own == "off" => Self::off(),
+            (Some(own), _) if !own.is_empty() => Self::in_folder(Path::new(&own)),
+            // By the convention a path that is not absolute counts for nothing.
+            (_, Some(all)) if all.is_absolute() => Self::in_folder(&all.join("floe")),
             _ => Self { folder: folder_of_user(temporary) },
         }
     }
@@ -207,13 +211,22 @@ mod tests {
     }
 
     #[test]
-    fn the_variable_names_the_folder() {
+    fn variables_name_the_folder() {
         let temporary = tempfile::tempdir().unwrap();
-        let named = |value: Option<&str>| Cache::named(value.map(OsString::from), temporary.path());
-        assert_eq!(named(Some("off")), Cache::off());
-        assert_eq!(named(Some("kept")), Cache::in_folder(Path::new("kept")));
-        let of_user = named(None);
-        assert_eq!(named(Some("")), of_user);
+        let named = |own: Option<&str>, all: Option<&str>| {
+            Cache::named([own, all].map(|value| value.map(OsString::from)), temporary.path())
+        };
+        let of_user = named(None, None);
+        for (own, all, cache) in [
+            (Some("off"), Some("/caches"), Cache::off()),
+            (Some("kept"), Some("/caches"), Cache::in_folder(Path::new("kept"))),
+            (None, Some("/caches"), Cache::in_folder(Path::new("/caches/floe"))),
+            (Some(""), Some("/caches"), Cache::in_folder(Path::new("/caches/floe"))),
+            (None, Some("caches"), of_user.clone()),
+            (Some(""), Some(""), of_user.clone()),
+        ] {
+            assert_eq!(named(own, all), cache, "{own:?} {all:?}");
+        }
         assert!(of_user.folder().unwrap().starts_with(temporary.path()));
     }
 
