@@ -7,7 +7,8 @@ use crate::driver::error::Blame;
 
 /// The end of the help text.
 pub(super) const HELP: &str = "\
-Exit codes: 0 all is there, 1 pictures differ, 2 usage, 65 bad input data, 66 input missing, 70 internal error,
+Exit codes: 0 all is there, 1 pictures differ, 2 usage, 65 bad input data, 66 input missing, 70 internal error, or
+restarts that bring nothing new,
 73 cannot create or 74 cannot write an output, 75 interrupted (run it again with --resume),
 78 bad scene file; the greatest of several.";
 

@@ -3,6 +3,7 @@
 mod compare;
 mod duration;
 mod encode;
+mod environment;
 mod exit;
 mod files;
 mod info;
@@ -60,7 +61,8 @@ enum Command {
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
     // The default hook has told where it happened; schedulers need the code of an internal error.
-    std::panic::catch_unwind(dispatch).unwrap_or(Exit::Internal).into()
+    let obedient = || environment::obey().map_or_else(|exit| exit, |()| dispatch());
+    std::panic::catch_unwind(obedient).unwrap_or(Exit::Internal).into()
 }
 
 fn dispatch() -> Exit {

@@ -17,7 +17,8 @@ use crate::sequence::SequenceError;
 pub struct RenderArguments {
     #[command(flatten)]
     settings: Settings,
-    /// Threads that render; one more makes the next frame ready [default: all cores]
+    /// Threads that render; one more makes the next frame ready [default: FLOE_THREADS, else as many as Slurm gives the job,
+    /// else all cores that it may use]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
@@ -52,6 +53,7 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         denoise: arguments.denoise,
         resume: arguments.resume,
         time_budget: arguments.time_budget,
+        restart: super::environment::restart(),
         checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
         ..arguments.settings.options()
     };

@@ -35,7 +35,7 @@ pub struct WatchArguments {
     /// Write what there is of a frame after so much light transport: 30s, 5m, 1h
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_budget: Option<Duration>,
-    /// Threads that render; as many more make previews [default: all cores]
+    /// Threads that render; as many more make previews [default: as for `floe render`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Which frame is drawn first when several wait

@@ -35,19 +35,21 @@ pub(super) struct Pools {
 }
 
 impl Pools {
-    /// `threads` that render, all cores without a number, and the spare one.
+    /// `threads` that render, without a number as many as everything else has, and the spare one.
     pub fn new(threads: Option<usize>) -> Result<Self, RenderError> {
-        Ok(Self { render: Self::render_only(threads)?, spare: pool(1)? })
+        Ok(Self { render: Self::render_only(threads)?, spare: pool("ahead", 1)? })
     }
 
     /// Those that render alone.
     pub fn render_only(threads: Option<usize>) -> Result<ThreadPool, RenderError> {
-        pool(threads.unwrap_or(0))
+        pool("render", threads.unwrap_or_else(rayon::current_num_threads))
     }
 }
 
-fn pool(threads: usize) -> Result<ThreadPool, RenderError> {
-    let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+/// Threads have names by which those that look at a machine tell them apart.
+fn pool(name: &'static str, threads: usize) -> Result<ThreadPool, RenderError> {
+    let builder = rayon::ThreadPoolBuilder::new().thread_name(move |index| format!("{name}-{index}"));
+    let built = builder.num_threads(threads).build();
     built.map_err(|e| RenderError::Threads { threads, reason: e.to_string() })
 }
 

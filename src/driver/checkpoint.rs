@@ -56,6 +56,13 @@ impl Checkpoint {
         File::open(&self.path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == wanted
     }
 
+    /// A hash of the samples in that of a picture, whatever time they took; `None` where there is none.
+    pub fn samples_beside(picture: &Path) -> Option<[u8; CHECKSUM]> {
+        let bytes = std::fs::read(Self::path_beside(picture)).ok()?;
+        let samples = bytes.len().checked_sub(CHECKSUM + size_of::<f64>())?;
+        Some(Sha256::digest(&bytes[..samples]).into())
+    }
+
     /// Replaces it by a frame that has taken so many seconds.
     ///
     /// # Errors
@@ -174,6 +181,13 @@ mod tests {
         assert!(folder.path().join(".a.1.checkpoint").is_file());
         assert_eq!((checkpoint.load(&mut loaded), checkpoint.is_there()), (Ok(Some(2.5)), true));
         assert_eq!(loaded, begun());
+        let samples = || Checkpoint::samples_beside(&folder.path().join("a.1.exr")).unwrap();
+        let before = samples();
+        checkpoint.save(&loaded, 3.5).unwrap();
+        assert_eq!(samples(), before, "more time, and nothing else");
+        loaded.parts[1].passes += 1;
+        checkpoint.save(&loaded, 3.5).unwrap();
+        assert_ne!(samples(), before);
         checkpoint.remove();
         assert!(!checkpoint.is_there());
     }

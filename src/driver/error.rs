@@ -142,6 +142,25 @@ pub enum RenderError {
         /// What the panic says.
         reason: String,
     },
+    /// Restarts of a job bring nothing new.
+    #[error(
+        "{path}: restart {count} of job {job} finds frame {number} as the {fruitless} restarts before it did, none of which \
+         brought a picture or a sample more: it gives up; {cure}. To try again remove this file"
+    )]
+    Fruitless {
+        /// Where it is noted what restarts found.
+        path: PathBuf,
+        /// The first frame that is not done.
+        number: FrameNumber,
+        /// The job.
+        job: u64,
+        /// How often it was started again.
+        count: u32,
+        /// Restarts before this one that brought nothing.
+        fruitless: u32,
+        /// What may be wrong, and what to do.
+        cure: String,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}; ask for fewer with --threads")]
     Threads {
@@ -197,7 +216,9 @@ impl RenderError {
             Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
-            Self::Threads { .. } | Self::Fault { .. } | Self::Denoise(_) => Blame::Internal,
+            Self::Threads { .. } | Self::Fruitless { .. } | Self::Fault { .. } | Self::Denoise(_) => {
+                Blame::Internal
+            }
             Self::Interrupted => Blame::Interrupted,
         }
     }

@@ -106,7 +106,7 @@ fn what_counts(scene: &SceneDescription, settings: &RenderDescription) -> String
     format!("{counts:?}")
 }
 
-fn hexadecimal(bytes: &[u8]) -> String {
+pub(super) fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

@@ -10,6 +10,7 @@ use super::fingerprint::Fingerprints;
 use super::interrupt::Interrupt;
 use super::job::Job;
 use super::ledger::FrameRecord;
+use super::restart::{Restart, RestartNote};
 use super::resume::left;
 use super::session::Session;
 use super::watch::WatchStatus;
@@ -43,6 +44,8 @@ pub struct RenderOptions {
     pub denoise: bool,
     /// Leaves frames alone whose pictures are there, and goes on from checkpoints.
     pub resume: bool,
+    /// That a scheduler has started this run again: it gives up when those before it have brought nothing.
+    pub restart: Option<Restart>,
     /// How often the frame that is being rendered is saved; only when it is asked for without it.
     pub checkpoint_every: Option<Duration>,
     /// Asks the run to stop, or to save how far it has come.
@@ -122,6 +125,8 @@ pub fn render(
     let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     let asked = tasks.len() + absent.len();
+    let note = options.restart.zip(tasks.first());
+    let note = note.map(|(restart, first)| RestartNote::of(restart, &pattern, first.number));
     let tasks = if options.resume {
         let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, options, observer));
         session.report.already = left.already;
@@ -129,6 +134,9 @@ pub fn render(
     } else {
         tasks
     };
+    if let Some(note) = &note {
+        note.compare((job, &fingerprints, &pattern), &tasks, options, observer)?;
+    }
     if let Some(shard) = options.shard.filter(|_| asked == 0) {
         observer.warning(&format!(
             "shard {shard} has no frame: there are fewer frames than shards, or its own are to come"
@@ -153,6 +161,10 @@ pub fn render(
     session.report.skipped = asked - session.report.already.len() - session.report.frames.len();
     session.report.interrupted |= stop.is_requested() && session.report.skipped > 0;
     session.report.seconds = start.elapsed().as_secs_f64();
+    // Whoever starts it again after it ended by itself has a reason.
+    if let Some(note) = note.filter(|_| !session.report.interrupted) {
+        note.remove();
+    }
     Ok(session.report)
 }
 

@@ -4,6 +4,7 @@
 mod compare;
 mod convergence;
 mod encode;
+mod environment;
 mod folders;
 mod half_spaces;
 mod integrators;
@@ -11,6 +12,7 @@ mod meshes;
 mod models;
 mod optics;
 mod preview;
+mod selection;
 mod shards;
 mod similarity;
 #[path = "../small/mod.rs"]
@@ -190,22 +192,6 @@ fn a_ledger_grows_and_the_same_frame_is_the_same_picture() {
     floe(&folder, &["render", "melt", "--frames", "1"]).ended(0);
     assert_eq!(folder.read("out/melt/frame_0001.exr"), first);
     assert_eq!(folder.ledger("out/melt/ledger.jsonl").len(), 2);
-}
-
-#[test]
-fn frames_are_chosen_in_every_form() {
-    for (selection, chosen) in [
-        ("2", vec![2]),
-        ("0,2", vec![0, 2]),
-        ("1-2", vec![1, 2]),
-        ("0-2x2", vec![0, 2]),
-        ("0-9:2", vec![0, 2]),
-    ] {
-        let folder = melt();
-        floe(&folder, &["render", "melt", "--frames", selection]).ended(0);
-        let expected: Vec<String> = chosen.iter().map(|n| format!("out/melt/frame_000{n}.exr")).collect();
-        assert_eq!(pictures(&folder), expected, "{selection}");
-    }
 }
 
 #[test]

@@ -98,27 +98,3 @@ fn shards_that_cannot_be_are_usage_errors() {
     }
     assert_eq!(pictures(&folder), [""; 0]);
 }
-
-/// As Open Job Description and Slurm send them, verbatim.
-#[test]
-fn frames_of_schedulers_are_taken_as_they_come() {
-    let folder = boxes(0, "");
-    for (number, name) in [(-5, "-5"), (-3, "-3"), (-1, "-1"), (7, "7"), (9, "9"), (20, "20")] {
-        let size = 0.5 + 0.01 * f64::from(number);
-        let cube = super::small::cuboid(glam::DVec3::splat(-size), glam::DVec3::splat(size));
-        let mesh = super::small::labelled(cube, 0, 1);
-        folder.write(&format!("boxes/frames/frame_{name}.ply"), super::small::ply(&mesh));
-    }
-    for (arguments, frames) in [
-        (&["--frames", "7,9,20"][..], "7,9,20"),
-        (&["--frames", "-5--1"], "-5--1x2"),
-        (&["--frames=-5--1:2"], "-5--1x2"),
-        (&["--frames", "-3,7"], "-3,7"),
-        (&["--frames", "-5"], "-5"),
-        (&["--frames", "1-100x2"], "7,9"),
-        (&["--frames", "1-100:2,20"], "7,9,20"),
-    ] {
-        let outcome = floe(&folder, &[&["render", "boxes"], arguments].concat()).ended(0);
-        assert!(outcome.stdout.contains(&format!(" ({frames}) in ")), "{arguments:?} {outcome:#?}");
-    }
-}

@@ -10,6 +10,8 @@ mod impatient;
 mod interrupted;
 mod numbers;
 mod pictures;
+#[cfg(unix)]
+mod restarts;
 mod runs;
 #[path = "../small/mod.rs"]
 mod small;

@@ -1,0 +1,106 @@
+//! Restarts by a scheduler: those that bring nothing new come to an end.
+
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use super::command::{Outcome, command, pictures};
+use super::interrupted::lengthy;
+use super::small::Folder;
+
+const NOTE: &str = "out/boxes/.restart.77.1.json";
+
+/// The command as job 77 that was started again so often.
+fn restarted(folder: &Folder, count: u32, more: &[&str]) -> Command {
+    let mut command = command(folder, &[&["render", "boxes"], more].concat());
+    command.env("SLURM_JOB_ID", "77").env("SLURM_RESTART_COUNT", count.to_string());
+    command
+}
+
+fn ended(mut command: Command) -> Outcome {
+    let output = command.output().unwrap();
+    let [stdout, stderr] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+    Outcome { code: output.status.code(), stdout, stderr }
+}
+
+/// Kills a run, as want of memory does, once there is a file that has some text in it.
+fn killed(mut command: Command, folder: &Folder, file: &str, text: &str) {
+    let mut child = command.spawn().unwrap();
+    let start = Instant::now();
+    let is_there =
+        || std::fs::read(folder.path(file)).is_ok_and(|b| String::from_utf8_lossy(&b).contains(text));
+    while !is_there() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        assert!(start.elapsed() < Duration::from_secs(60), "no {text} in {file}");
+        sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// Three frames of which each takes for ever.
+fn endless() -> Folder {
+    lengthy("path", 1_000_000, "")
+}
+
+/// A restart that is killed before it has saved anything.
+fn fruitless(folder: &Folder, count: u32, more: &[&str]) {
+    killed(restarted(folder, count, more), folder, NOTE, &format!("\"restart\":{count}"));
+}
+
+#[test]
+fn the_third_restart_after_two_that_brought_nothing_gives_up() {
+    let folder = endless();
+    let resume = ["--resume", "--checkpoint-every", "0"];
+    fruitless(&folder, 1, &resume);
+    fruitless(&folder, 2, &resume);
+    ended(restarted(&folder, 3, &resume)).ended(70).says(&[
+        "error: out/boxes/.restart.77.1.json",
+        "restart 3 of job 77 finds frame 1",
+        "memory",
+        "--checkpoint-every 30s",
+        "remove this file",
+    ]);
+    assert!(pictures(&folder).is_empty());
+    // What is not a restart is not judged, nor are the restarts of other jobs.
+    let first = restarted(&folder, 0, &["--resume", "--checkpoint-every", "0.1"]);
+    killed(first, &folder, "out/boxes/.frame_0001.checkpoint", "");
+    let mut other = restarted(&folder, 9, &resume);
+    other.env("SLURM_JOB_ID", "78");
+    killed(other, &folder, "out/boxes/.restart.78.1.json", "\"restart\":9");
+    // One that comes to its end leaves nothing.
+    std::fs::remove_file(folder.path(NOTE)).unwrap();
+    std::fs::remove_file(folder.path("out/boxes/.restart.78.1.json")).unwrap();
+    ended(restarted(&folder, 4, &["--resume", "--samples", "1"])).ended(0);
+    assert_eq!(folder.leftovers(), [""; 0]);
+}
+
+#[test]
+fn restarts_that_bring_samples_or_pictures_go_on() {
+    let folder = endless();
+    let saving = ["--resume", "--checkpoint-every", "0.1"];
+    let checkpoint = "out/boxes/.frame_0001.checkpoint";
+    fruitless(&folder, 1, &["--resume", "--checkpoint-every", "0"]);
+    killed(restarted(&folder, 2, &saving), &folder, checkpoint, "floe checkpoint");
+    fruitless(&folder, 3, &["--resume", "--checkpoint-every", "0"]);
+    fruitless(&folder, 4, &["--resume", "--checkpoint-every", "0"]);
+    ended(restarted(&folder, 5, &saving)).ended(70);
+    // A frame that another worker has finished is new too.
+    let one = ["--resume", "--samples", "1", "--frames", "1"];
+    ended(command(&folder, &[&["render", "boxes"], &one[..]].concat())).ended(0);
+    ended(restarted(&folder, 6, &["--resume", "--samples", "1"])).ended(0);
+}
+
+/// Without --resume only pictures count, as nothing goes on.
+#[test]
+fn restarts_that_begin_anew_are_told_to_resume() {
+    let folder = endless();
+    fruitless(&folder, 1, &[]);
+    killed(
+        restarted(&folder, 2, &["--checkpoint-every", "0.1"]),
+        &folder,
+        "out/boxes/.frame_0001.checkpoint",
+        "",
+    );
+    ended(restarted(&folder, 3, &[])).ended(70).says(&["frame 1", "add --resume"]);
+}
