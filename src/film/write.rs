@@ -5,7 +5,7 @@
 //! the rights of an ordinary new file (0666 less the umask), not those of a private temporary one.
 //!
 //! A process that is killed leaves its temporary file. Its name tells who writes it, so [`remove_abandoned`] knows which
-//! ones nobody will finish: those of the dead of this machine, and of other machines those that are [`OLD`].
+//! ones nobody will finish: those of the dead of this machine, and of other machines those a day old.
 
 use std::fs::{self, DirEntry, File};
 use std::io::Write;
