@@ -31,12 +31,7 @@ fn renders_on(threads: usize, mut command: Command) -> String {
     use std::time::{Duration, Instant};
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let start = Instant::now();
-    while rendering(child.id()) != threads {
-        assert!(
-            start.elapsed() < Duration::from_secs(60),
-            "{} threads, not {threads}",
-            rendering(child.id())
-        );
+    while rendering(child.id()) != threads && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(10));
     }
     // Nor are there more of them a little later.
