@@ -67,7 +67,7 @@ impl RenderOptions {
 
 /// Hears of what happens while frames are rendered.
 pub trait Observer: Sync {
-    /// The frames that will be rendered.
+    /// The frames of which it will be told what became of them.
     fn started(&self, _frames: usize) {}
     /// A frame is begun.
     fn frame(&self, _number: FrameNumber) {}
@@ -128,7 +128,7 @@ pub fn render(
     } else {
         tasks
     };
-    observer.started(tasks.len());
+    observer.started(tasks.len() + absent.len());
     if options.frames.is_none() {
         gaps(&job.files).iter().for_each(|gap| observer.warning(&missing(gap)));
     }

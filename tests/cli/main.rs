@@ -11,6 +11,7 @@ mod meshes;
 mod models;
 mod optics;
 mod preview;
+mod progress;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
