@@ -13,6 +13,7 @@ mod models;
 mod optics;
 mod preview;
 mod progress;
+mod report;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;
