@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::duration::{duration, time};
 use super::exit::Exit;
-use super::progress::{Bars, ProgressArguments, reporter};
+use super::progress::{Bars, ProgressArguments, Reporter, reporter};
 use super::settings::Settings;
 use super::streams::{print, say};
 use super::summary;
@@ -46,7 +46,6 @@ pub struct RenderArguments {
 
 /// Renders and says what became of it.
 pub fn run(arguments: &RenderArguments) -> Exit {
-    let progress = reporter(&arguments.progress, |quiet, bar| Box::new(Bars::new(quiet, bar)));
     let options = RenderOptions {
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
@@ -57,6 +56,8 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         ..arguments.settings.options()
     };
     let options = if arguments.preview { preview::options(options) } else { options };
+    let bars = |quiet, bar| Box::new(Bars::new(quiet, bar)) as Box<dyn Reporter>;
+    let progress = reporter(&arguments.progress, options.shard, bars);
     #[cfg(unix)]
     super::signals::obey(&options.interrupt);
     let open = if arguments.preview { preview::open } else { Job::open };

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::driver::{RenderError, RenderOptions, check_pictures};
-use crate::sequence::FrameSelection;
+use crate::sequence::{Deal, FrameSelection, Shard};
 
 #[derive(Debug, Args)]
 pub struct Settings {
@@ -14,6 +14,12 @@ pub struct Settings {
     /// Only these frames: 7,9,20 or 1-100 or 1-100x2 (also 1-100:2)
     #[arg(long, value_name = "RANGE", value_parser = FrameSelection::parse, allow_hyphen_values = true)]
     frames: Option<FrameSelection>,
+    /// Only the I-th of N shards of these frames, from 1/N to N/N: one for each machine
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
+    shard: Option<Shard>,
+    /// How frames are dealt out to shards
+    #[arg(long, value_enum, value_name = "HOW", requires = "shard", default_value_t)]
+    shard_by: ShardBy,
     /// Name of the pictures: shot.exr for one, shots/frame_####.exr (also %04d, $F4) for several
     /// (default: output.path of the scene, else out/NAME/frame_####.exr with the NAME of the folder)
     #[arg(long, short, value_name = "PATTERN", value_parser = output_pattern)]
@@ -30,11 +36,26 @@ pub struct Settings {
     seed: Option<u64>,
 }
 
+/// How frames are dealt out.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum ShardBy {
+    /// One frame to each shard in turns
+    #[default]
+    RoundRobin,
+    /// A run of neighbours to each
+    Blocks,
+}
+
 impl Settings {
     /// What they ask of a run.
     pub fn options(&self) -> RenderOptions {
+        let deal = match self.shard_by {
+            ShardBy::RoundRobin => Deal::Turns,
+            ShardBy::Blocks => Deal::Blocks,
+        };
         RenderOptions {
             frames: self.frames.clone(),
+            shard: self.shard.map(|shard| shard.dealt(deal)),
             output: self.output.clone(),
             samples: self.samples,
             target_error: self.target_error,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::duration::time;
 use super::exit::Exit;
-use super::progress::{ProgressArguments, reporter};
+use super::progress::{ProgressArguments, Reporter, reporter};
 use super::settings::{output_pattern, target_error};
 use super::streams::{print, say};
 use super::watching::Watching;
@@ -71,6 +71,9 @@ pub struct WatchArguments {
     serve_address: std::net::IpAddr,
     #[command(flatten)]
     progress: ProgressArguments,
+    /// Refused with a reason
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    shard: Option<String>,
 }
 
 /// Which frame is drawn first.
@@ -85,7 +88,16 @@ enum Queue {
 
 /// Renders what comes and says what became of it.
 pub fn run(arguments: &WatchArguments) -> Exit {
-    let watching = reporter(&arguments.progress, |quiet, bar| Box::new(Watching::new(quiet, bar)));
+    let bars = |quiet, bar| Box::new(Watching::new(quiet, bar)) as Box<dyn Reporter>;
+    let watching = reporter(&arguments.progress, None, bars);
+    // Which place a frame has is not known while others come.
+    if arguments.shard.is_some() {
+        say(
+            "error: --shard: a watch draws every frame that comes; on several machines run `floe render --resume --shard \
+             I/N` on each, and again when there are more frames",
+        );
+        return Exit::Usage;
+    }
     let interrupt = Interrupt::default();
     #[cfg(unix)]
     super::signals::obey(&interrupt);

@@ -214,7 +214,8 @@ fn blame_of_sequence(error: &SequenceError) -> Blame {
         | SequenceError::Unnumbered { .. }
         | SequenceError::Pattern { .. }
         | SequenceError::NoPlace { .. }
-        | SequenceError::Selection { .. } => Blame::Configuration,
+        | SequenceError::Selection { .. }
+        | SequenceError::Shard { .. } => Blame::Configuration,
     }
 }
 

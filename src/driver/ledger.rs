@@ -1,4 +1,5 @@
-//! The ledger: one JSON line a frame, `ledger.jsonl` beside the pictures. [`super::ledgers`] reads it.
+//! The ledger: one JSON line a frame, `ledger.jsonl` beside the pictures. Each shard has its own, `ledger.3.jsonl`: lines
+//! of two machines tear each other on network file systems. [`super::ledgers`] reads all of them.
 //!
 //! It holds what the pictures must not: run times, rays, and how often something rare happened.
 
@@ -15,6 +16,7 @@ use super::stopping::StoppedBy;
 use crate::accel::Hierarchy;
 use crate::film::{ErrorEstimate, FrameImage};
 use crate::integrator::Counters;
+use crate::sequence::Shard;
 
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -224,13 +226,14 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// The ledger beside a picture, made if it is not there: a folder that cannot be written to is found out before
+    /// The ledger of a shard, or of a whole run, beside a picture; made if it is not there: a folder that cannot be written to is found out before
     /// anything is rendered.
     ///
     /// # Errors
     /// [`RenderError::CannotCreate`] for the folder or the file.
-    pub fn beside(picture: &Path) -> Result<Self, RenderError> {
-        let ledger = Self { path: picture.with_file_name("ledger.jsonl") };
+    pub fn beside(picture: &Path, shard: Option<Shard>) -> Result<Self, RenderError> {
+        let name = shard.map_or("ledger.jsonl".into(), |shard| format!("ledger.{}.jsonl", shard.number()));
+        let ledger = Self { path: picture.with_file_name(name) };
         let folder = picture.parent().unwrap_or(Path::new(""));
         std::fs::create_dir_all(folder)
             .and_then(|()| ledger.open().map(drop))

@@ -14,6 +14,7 @@ mod ahead;
 mod allocation;
 mod arrivals;
 mod checkpoint;
+mod chosen;
 pub mod error;
 pub mod fingerprint;
 pub mod frame_seeds;

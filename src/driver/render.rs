@@ -4,24 +4,25 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::ahead::{Pools, one_ahead};
+use super::chosen::{Chosen, chosen, not_there};
 use super::error::RenderError;
 use super::fingerprint::Fingerprints;
 use super::interrupt::Interrupt;
-use super::job::{FrameTask, Job};
+use super::job::Job;
 use super::ledger::FrameRecord;
 use super::resume::left;
 use super::session::Session;
 use super::watch::WatchStatus;
 use crate::scene::description::{RenderDescription, SceneDescription};
-use crate::sequence::{
-    FrameNumber, FrameSelection, Gap, SequenceError, check_output_pattern, format_numbers, gaps,
-};
+use crate::sequence::{FrameNumber, FrameSelection, Gap, Shard, check_output_pattern, gaps};
 
 /// What the command line may override.
 #[derive(Clone, Debug, Default)]
 pub struct RenderOptions {
     /// Only these frames.
     pub frames: Option<FrameSelection>,
+    /// Of those only this part.
+    pub shard: Option<Shard>,
     /// Pattern of the pictures' names.
     pub output: Option<String>,
     /// Samples a pixel, at most where there is a target.
@@ -113,9 +114,9 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<RenderReport, RenderError> {
-    let (tasks, absent) = chosen(job, options)?;
+    let Chosen { tasks, absent, shared } = chosen(job, options)?;
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
-    check_pictures(&pattern, tasks.len())?;
+    check_pictures(&pattern, shared)?;
     let pools = Pools::new(options.threads)?;
     let start = Instant::now();
     let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
@@ -128,6 +129,11 @@ pub fn render(
     } else {
         tasks
     };
+    if let Some(shard) = options.shard.filter(|_| asked == 0) {
+        observer.warning(&format!(
+            "shard {shard} has no frame: there are fewer frames than shards, or its own are to come"
+        ));
+    }
     observer.started(tasks.len() + absent.len());
     if options.frames.is_none() {
         gaps(&job.files).iter().for_each(|gap| observer.warning(&missing(gap)));
@@ -148,28 +154,6 @@ pub fn render(
     session.report.interrupted |= stop.is_requested() && session.report.skipped > 0;
     session.report.seconds = start.elapsed().as_secs_f64();
     Ok(session.report)
-}
-
-/// The frames to be rendered, and those that were asked for by their number but are not there.
-pub(super) fn chosen(
-    job: &Job,
-    options: &RenderOptions,
-) -> Result<(Vec<FrameTask>, Vec<FrameNumber>), RenderError> {
-    let Some(selection) = &options.frames else { return Ok((job.tasks(), Vec::new())) };
-    let tasks = job.select(selection)?;
-    let absent = selection.absent(&numbers(job));
-    match absent.first() {
-        Some(&number) if !options.keep_going => Err(not_there(job, number)),
-        _ => Ok((tasks, absent)),
-    }
-}
-
-fn numbers(job: &Job) -> Vec<FrameNumber> {
-    job.tasks().iter().map(|task| task.number).collect()
-}
-
-pub(super) fn not_there(job: &Job, number: FrameNumber) -> RenderError {
-    SequenceError::NotThere { number, available: format_numbers(&numbers(job)) }.into()
 }
 
 fn missing(gap: &Gap) -> String {

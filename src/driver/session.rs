@@ -1,6 +1,6 @@
 //! Renders and writes the frames of one run, each when its turn comes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::accumulation::Accumulation;
 use super::ahead::{Preparation, Ready, timed};
@@ -51,8 +51,9 @@ impl<'a> Session<'a> {
     ) -> Result<Self, RenderError> {
         let settings = options.settings(&job.world.description.render);
         let denoiser = options.wants_denoised(&job.world.description).then(Denoiser::load).transpose()?;
-        let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
-        let ledger = Ledger::beside(&first_picture)?;
+        // A shard may have no frame.
+        let first_picture = picture(pattern, tasks.first().map_or(FrameNumber::ONE, |task| task.number));
+        let ledger = Ledger::beside(&first_picture, options.shard)?;
         remove_abandoned(&first_picture);
         lap::since_last();
         let report = RenderReport {

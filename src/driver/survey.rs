@@ -6,11 +6,12 @@ use std::time::Duration;
 use rayon::prelude::*;
 
 use super::checkpoint::Checkpoint;
+use super::chosen::{Chosen, chosen, not_there};
 use super::error::RenderError;
 use super::fingerprint::{Fingerprints, FrameSource};
 use super::job::{FrameTask, Job};
 use super::picture::{PictureState, picture_path};
-use super::render::{RenderOptions, chosen, not_there};
+use super::render::RenderOptions;
 use crate::scene::world::World;
 use crate::sequence::FrameNumber;
 
@@ -63,7 +64,7 @@ pub fn survey(
     options: &RenderOptions,
 ) -> Result<(Vec<(FrameNumber, FrameState)>, String), RenderError> {
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
-    let (tasks, absent) = chosen(job, &RenderOptions { keep_going: true, ..options.clone() })?;
+    let Chosen { tasks, absent, .. } = chosen(job, &RenderOptions { keep_going: true, ..options.clone() })?;
     let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
     let state = |task: &FrameTask| {
         let picture = picture_path(&pattern, task.number);

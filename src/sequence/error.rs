@@ -92,6 +92,14 @@ pub enum SequenceError {
         /// What is wrong and what to write instead.
         reason: String,
     },
+    /// A shard that cannot be.
+    #[error("the shard `{text}` cannot be understood: {reason}")]
+    Shard {
+        /// The text.
+        text: String,
+        /// What is wrong and what to write instead.
+        reason: String,
+    },
     /// The selection leaves no frame.
     #[error("none of the frames `{selection}` is in the sequence, which has {available}: choose from those")]
     NoneSelected {

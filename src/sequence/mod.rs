@@ -5,8 +5,8 @@
 //! Padding never matters for the order, gaps are allowed, and whatever is ambiguous (two files of one number,
 //! two kinds of names in one folder) is an error that names both files rather than a guess.
 //!
-//! [`FrameSelection`] is the part of the sequence that the command line asks for; [`output_path`] names the
-//! pictures.
+//! [`FrameSelection`] is the part of the sequence that the command line asks for, and a [`Shard`] what one of several
+//! machines does of that; [`output_path`] names the pictures.
 
 mod error;
 mod folders;
@@ -18,6 +18,7 @@ mod number;
 mod output;
 mod pattern;
 mod selection;
+mod shard;
 
 use std::path::PathBuf;
 
@@ -29,6 +30,7 @@ pub(crate) use name::is_frame_name;
 pub use number::FrameNumber;
 pub use output::{check_output_pattern, frame_path, has_place, output_path};
 pub use selection::{FrameSelection, format_numbers};
+pub use shard::{Deal, Shard};
 
 /// One frame of a sequence on disk.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

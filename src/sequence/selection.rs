@@ -67,6 +67,19 @@ impl FrameSelection {
         std::iter::successors(first, |&before| self.parts.iter().filter_map(|part| part.after(before)).min())
     }
 
+    /// Where a selected frame stands among all that might be there, from 0 and in the order of the text: part after
+    /// part, of which one without a step counts whole distances from its first number.
+    pub fn position(&self, number: FrameNumber) -> Option<u128> {
+        let part = self.parts.iter().position(|part| part.contains(number))?;
+        let before: u128 = self.parts[..part].iter().map(Part::places).sum();
+        Some(before + self.parts[part].place(number))
+    }
+
+    /// How many positions there are; numbers that several parts have count for each.
+    pub fn positions(&self) -> u128 {
+        self.parts.iter().map(Part::places).sum()
+    }
+
     /// The single numbers of the selection that are not in a sequence; ranges take what there is.
     pub fn absent(&self, numbers: &[FrameNumber]) -> Vec<FrameNumber> {
         let single = self.parts.iter().filter(|part| part.first == part.last).map(|part| part.first);
@@ -81,6 +94,16 @@ impl Part {
         let steps = (before.millionths() - first).div_euclid(step) + 1;
         let next = FrameNumber::from_millionths(first + steps.max(0) * step)?;
         (next <= self.last).then_some(next)
+    }
+
+    /// The place of a number that it contains, from 0.
+    fn place(&self, number: FrameNumber) -> u128 {
+        let step = self.step.unwrap_or(FrameNumber::ONE);
+        u128::from(number.millionths().abs_diff(self.first.millionths()) / step.millionths().unsigned_abs())
+    }
+
+    fn places(&self) -> u128 {
+        self.place(self.last) + 1
     }
 
     fn contains(&self, number: FrameNumber) -> bool {
@@ -183,6 +206,30 @@ mod tests {
         assert_eq!(selected("-2-2x2", -20..=20), [-2, 0, 2]);
         assert_eq!(selected("-7", -20..=20), [-7]);
         assert_eq!(selected(" 3 , 5 - 6 ", 0..=9), [3, 5, 6]);
+    }
+
+    /// Whatever is there: what one run finds missing has the place that another finds it at.
+    #[test]
+    fn positions_follow_from_the_text() {
+        for (text, number, position, of) in [
+            ("1-100", "1", Some(0), 100),
+            ("1-100", "100", Some(99), 100),
+            ("1-100x2", "7", Some(3), 50),
+            ("1-100x2", "8", None, 50),
+            ("9,3-5", "9", Some(0), 4),
+            ("9,3-5", "4", Some(2), 4),
+            ("-5--1", "-3", Some(2), 5),
+            ("-3,7", "7", Some(1), 2),
+            ("10-20", "12.5", Some(2), 11),
+            ("0-1x0.25", "0.75", Some(3), 5),
+            ("1-3,2-5", "3", Some(2), 7),
+            ("1-3,2-5", "4", Some(5), 7),
+            ("0-1000000000000", "1000000000000", Some(1_000_000_000_000), 1_000_000_000_001),
+        ] {
+            let selection = FrameSelection::parse(text).unwrap();
+            let found = (selection.position(number.parse().unwrap()), selection.positions());
+            assert_eq!(found, (position, of), "{number} of {text}");
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod optics;
 mod preview;
 mod progress;
 mod report;
+mod shards;
 mod similarity;
 #[path = "../small/mod.rs"]
 mod small;

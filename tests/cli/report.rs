@@ -8,14 +8,10 @@ use super::{boxes, floe, frame};
 fn two_shards_are_one_report() {
     let folder = boxes(5, "");
     folder.write(&frame(5), "ply\n");
-    let shard = |number: u32, frames: &str, code: i32| {
-        floe(&folder, &["render", "boxes", "--keep-going", "--frames", frames]).ended(code);
-        let ledger = folder.read("out/boxes/ledger.jsonl");
-        std::fs::remove_file(folder.path("out/boxes/ledger.jsonl")).unwrap();
-        folder.write(&format!("out/boxes/ledger.{number}.jsonl"), ledger);
-    };
-    shard(1, "1,3,5", 65);
-    shard(2, "2", 0);
+    let shard = ["render", "boxes", "--keep-going", "--shard"];
+    let objects = floe(&folder, &[&shard[..], &["1/2", "--progress", "json"]].concat()).ended(65).stderr;
+    assert!(objects.lines().all(|line| line.contains("\"shard\":1")), "{objects}");
+    floe(&folder, &[&shard[..], &["2/2", "--frames", "1-3"]].concat()).ended(0);
     let files = ["--csv", "frames.csv", "--svg", "error.svg"];
     let text = floe(&folder, &[&["report", "boxes"], &files[..]].concat()).ended(0).stdout;
     for words in [

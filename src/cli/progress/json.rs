@@ -16,18 +16,19 @@ use crate::cli::streams::{event, say};
 use crate::cli::watching::describe;
 use crate::driver::watch::Phase;
 use crate::driver::{FrameRecord, Job, Observer, Status, WatchStatus};
-use crate::sequence::FrameNumber;
+use crate::sequence::{FrameNumber, Shard};
 
 /// Objects on standard error.
 pub struct Json {
     quiet: bool,
+    shard: Option<Shard>,
     advance: Mutex<Advance>,
 }
 
 impl Json {
     /// With `quiet` only of warnings, errors and the summary.
-    pub fn new(quiet: bool) -> Self {
-        Self { quiet, advance: Mutex::new(Advance::new()) }
+    pub fn new(quiet: bool, shard: Option<Shard>) -> Self {
+        Self { quiet, shard, advance: Mutex::new(Advance::new()) }
     }
 
     fn lock(&self) -> MutexGuard<'_, Advance> {
@@ -35,8 +36,9 @@ impl Json {
     }
 
     /// Tells an event; where all is in order only if that is wanted.
-    fn tell(&self, object: Map<String, Value>) {
-        if !self.quiet || object["event"] == "failed" {
+    fn tell(&self, mut object: Map<String, Value>) {
+        if !self.quiet || matches!(object["event"].as_str(), Some("failed" | "warning" | "summary")) {
+            object.insert("shard".into(), self.shard.map(Shard::number).into());
             event(&Value::Object(object));
         }
     }
@@ -61,7 +63,8 @@ impl Observer for Json {
     }
 
     fn warning(&self, text: &str) {
-        say(&format!("warning: {text}"));
+        let [name, text] = ["warning", text].map(Value::from);
+        self.tell(Map::from_iter([("event".into(), name), ("text".into(), text)]));
     }
 
     fn finished(&self, record: &FrameRecord) {
@@ -107,7 +110,7 @@ impl Reporter for Json {
             object.extend(results);
         }
         object.insert("exit".into(), (exit as u8).into());
-        event(&Value::Object(object));
+        self.tell(object);
     }
 }
 

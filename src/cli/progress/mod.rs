@@ -13,6 +13,7 @@ use serde_json::Value;
 use super::exit::Exit;
 use super::streams::{Form, say, speak};
 use crate::driver::Observer;
+use crate::sequence::Shard;
 
 pub(super) use bars::Bars;
 use json::Json;
@@ -59,13 +60,14 @@ pub trait Reporter: Observer {
 /// tells people, quietly or not, with a bar or without.
 pub fn reporter(
     asked: &ProgressArguments,
+    shard: Option<Shard>,
     bars: impl FnOnce(bool, bool) -> Box<dyn Reporter>,
 ) -> Box<dyn Reporter> {
     let quiet = asked.quiet;
     match asked.progress.unwrap_or_else(of_environment) {
         Manner::Json => {
             speak(Form::Json);
-            Box::new(Json::new(quiet))
+            Box::new(Json::new(quiet, shard))
         }
         Manner::Openjd => {
             speak(Form::OpenJd);

@@ -17,7 +17,7 @@ use crate::driver::ledgers::LedgerLine;
 pub struct Shards {
     /// In order; the ledger of whole runs first.
     pub shards: Vec<ShardReport>,
-    /// (1); `None` with fewer than two shards.
+    /// (1) of those that have a number; `None` with fewer than two.
     pub imbalance: Option<f64>,
     /// Seconds from the beginning of the first line to the end of the last one, by the clocks of the machines.
     pub elapsed_seconds: Option<f64>,
@@ -61,7 +61,8 @@ impl Shards {
             }
         };
         let mut shards: Vec<ShardReport> = numbers.iter().map(shard).collect();
-        let times: Vec<f64> = shards.iter().map(|shard| shard.effort.seconds).collect();
+        let times: Vec<f64> =
+            shards.iter().filter(|shard| shard.shard.is_some()).map(|shard| shard.effort.seconds).collect();
         let limit = threshold(&times).unwrap_or(f64::INFINITY);
         shards.iter_mut().for_each(|shard| shard.straggler = shard.effort.seconds > limit);
         let elapsed_seconds = first.zip(last).map(|(first, last)| last - first);

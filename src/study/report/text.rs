@@ -124,7 +124,8 @@ fn slowest(report: &SequenceReport) -> String {
     if slow.slowest.len() < 2 {
         return String::new();
     }
-    let heads = ["seconds", "prepare", "wait", "render", "write", "x median", "x samples", "x s/sample"];
+    let heads =
+        ["seconds", "prepare", "wait", "render", "write", "CPU %", "x median", "x samples", "x s/sample"];
     let mut text = format!("\nslowest frames\n{:>8}{:>7}", "frame", "shard");
     heads.iter().for_each(|head| text += &format!("{head:>11}"));
     for one in &slow.slowest {
@@ -150,8 +151,10 @@ fn slow_line(frame: &FrameReport, slow: &SlowFrame) -> String {
     let mut text = format!("\n{:>8}{:>7}", frame.frame, shard_name(frame.shard));
     let FrameReport { prepare_seconds, wait_seconds, render_seconds, write_seconds, .. } = frame;
     let seconds = [&frame.effort.seconds, prepare_seconds, wait_seconds, render_seconds, write_seconds];
+    let busy = 100.0 * frame.effort.cpu_seconds / frame.effort.thread_seconds;
     let ratios = [slow.times_median, slow.times_samples, slow.times_sample_seconds];
     seconds.iter().for_each(|value| text += &format!("{value:>11.2}"));
+    text += &format!("{busy:>11.0}");
     ratios.iter().for_each(|value| text += &format!("{value:>11.2}"));
     text += &format!("  {}", slow.most);
     if frame.restarts > 0 {
@@ -166,7 +169,9 @@ fn shard_name(shard: Option<u32>) -> String {
 
 fn shards(report: &SequenceReport) -> String {
     let shards = &report.shards;
-    let Some(imbalance) = shards.imbalance else { return String::new() };
+    if shards.shards.len() < 2 {
+        return String::new();
+    }
     let mut text = format!(
         "\n{:>8}{:>10}{:>11}{:>11}{:>11}{:>11}\n",
         "shard", "pictures", "seconds", "CPU s", "begins", "ends"
@@ -185,7 +190,10 @@ fn shards(report: &SequenceReport) -> String {
             if shard.straggler { "  straggler" } else { "" }
         );
     }
-    text + &format!("imbalance {imbalance:.2}: the longest shard over the mean\n")
+    if let Some(imbalance) = shards.imbalance {
+        let _ = writeln!(text, "imbalance {imbalance:.2}: the longest shard over the mean");
+    }
+    text
 }
 
 /// Warnings, and what could not be read.
