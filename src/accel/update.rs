@@ -5,7 +5,7 @@
 //! [`REBUILD_ABOVE`] it is built anew. Hits depend on neither.
 
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::leaf::Leaf;
 use super::{Accel, Connectivity, TriangleId};
@@ -30,7 +30,7 @@ use super::{Accel, Connectivity, TriangleId};
 pub const REBUILD_ABOVE: f32 = 1.1;
 
 /// What became of the hierarchy of the frame before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hierarchy {
     /// There was none, or its triangles were others.

@@ -10,6 +10,7 @@ mod info;
 mod optics;
 mod progress;
 mod render;
+mod report;
 mod screen;
 #[cfg(feature = "serve")]
 mod serve;
@@ -46,6 +47,8 @@ enum Command {
     Watch(watch::WatchArguments),
     /// Print which frames are there, missing, begun, out of date or damaged
     Status(status::StatusArguments),
+    /// Print what the ledgers of rendered frames tell: time, errors, slow frames and shards
+    Report(report::ReportArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
     /// Make a movie, or a sheet of small pictures, of what was rendered
@@ -71,6 +74,7 @@ fn dispatch() -> Exit {
             Command::Render(arguments) => render::run(&arguments),
             Command::Watch(arguments) => watch::run(&arguments),
             Command::Status(arguments) => status::run(&arguments),
+            Command::Report(arguments) => report::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
             Command::Encode(arguments) => encode::run(&arguments),
             Command::Optics(arguments) => optics::run(&arguments),

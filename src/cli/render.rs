@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use clap::Args;
+use serde_json::Value;
 
 use super::duration::{duration, time};
 use super::exit::Exit;
-use super::progress::Progress;
+use super::progress::{Bars, ProgressArguments, Reporter, reporter};
 use super::settings::Settings;
 use super::streams::{print, say};
-use super::summary::summary;
+use super::summary;
 use crate::driver::{Job, RenderError, RenderOptions, preview, render};
 use crate::sequence::SequenceError;
 
@@ -40,9 +41,8 @@ pub struct RenderArguments {
     /// Go on with the other frames when one fails; the exit code still tells
     #[arg(long)]
     keep_going: bool,
-    /// Only warnings, errors and the summary
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    progress: ProgressArguments,
 }
 
 /// Renders and says what became of it.
@@ -58,34 +58,38 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         ..arguments.settings.options()
     };
     let options = if arguments.preview { preview::options(options) } else { options };
+    let bars = |quiet, bar| Box::new(Bars::new(quiet, bar)) as Box<dyn Reporter>;
+    let progress = reporter(&arguments.progress, options.shard, bars);
     #[cfg(unix)]
     super::signals::obey(&options.interrupt);
-    let progress = Progress::new(arguments.quiet);
     let open = if arguments.preview { preview::open } else { Job::open };
     let report = open(&arguments.settings.scene).and_then(|job| {
         if let Some(scene) = &job.written_scene {
             say(&format!("wrote {}: edit it to change camera, light and media", scene.display()));
         }
-        render(&job, &options, &progress)
+        render(&job, &options, &*progress)
     });
-    progress.finish();
-    match report {
+    progress.clear();
+    let (results, exit) = match report {
         Ok(report) => {
-            let printed = print(&summary(&report));
+            let printed = print(&summary::text(&report));
             let interrupted = if report.interrupted { Exit::Interrupted } else { Exit::Complete };
             let failures = report.failures.iter().map(|(_, error)| Exit::from(error));
-            failures.fold(printed.max(interrupted), Exit::max)
+            (summary::json(&report), failures.fold(printed.max(interrupted), Exit::max))
         }
         Err(error) => {
             say(&format!("error: {error}"));
-            match error {
+            let exit = match error {
                 RenderError::Sequence(SequenceError::NoPlace { .. })
                     if arguments.settings.output.is_some() =>
                 {
                     Exit::Usage
                 }
                 error => Exit::from(&error),
-            }
+            };
+            (Value::Null, exit)
         }
-    }
+    };
+    progress.ended(results, exit);
+    exit
 }

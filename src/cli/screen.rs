@@ -17,9 +17,9 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// `length` of the bar, if it is known, and what it looks like.
-    pub fn new(quiet: bool, length: Option<u64>, template: &str) -> Self {
-        let terminal = std::io::stderr().is_terminal() && !quiet;
+    /// Whether a terminal is to be made use of; `length` of the bar, if it is known, and what it looks like.
+    pub fn new(quiet: bool, bar: bool, length: Option<u64>, template: &str) -> Self {
+        let terminal = bar && !quiet && std::io::stderr().is_terminal();
         let target = if terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(length, target);
         bar.set_style(

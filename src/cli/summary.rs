@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use serde_json::{Value, json};
+
 use crate::accel::Hierarchy;
+use crate::driver::ledger::RelativeError;
 use crate::driver::{FrameRecord, RenderReport, Status, StoppedBy};
 use crate::integrator::Counters;
 use crate::sequence::{FrameNumber, format_numbers};
 
 /// Frames, time, estimated error, rare events, what is left out, and where it all is.
-pub fn summary(report: &RenderReport) -> String {
+pub fn text(report: &RenderReport) -> String {
     let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
     let lines = [
         already_line(report),
@@ -23,6 +26,26 @@ pub fn summary(report: &RenderReport) -> String {
         places_line(report, &done),
     ];
     lines.into_iter().flatten().map(|line| line + "\n").collect()
+}
+
+/// The same for programs.
+pub fn json(report: &RenderReport) -> Value {
+    let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
+    let numbers: Vec<FrameNumber> = done.iter().filter_map(|r| r.frame.parse().ok()).collect();
+    let failed: Vec<FrameNumber> = report.failures.iter().map(|(number, _)| *number).collect();
+    json!({
+        "complete": format_numbers(&numbers),
+        "already": format_numbers(&report.already),
+        "failed": format_numbers(&failed),
+        "skipped": report.skipped,
+        "interrupted": report.interrupted,
+        "seconds": report.seconds,
+        "samples": done.iter().map(|r| r.samples).sum::<u64>(),
+        "relative_error": root_mean_square(&done),
+        "worst": worst(&done).map(|(error, frame)| json!({ "frame": frame, "relative_error": error })),
+        "pictures": report.pattern,
+        "ledger": report.ledger,
+    })
 }
 
 fn already_line(report: &RenderReport) -> Option<String> {
@@ -65,19 +88,24 @@ fn failures_line(report: &RenderReport) -> Option<String> {
     Some(line)
 }
 
-/// Root of the mean square over the frames, so that it is the error of the sequence as one picture.
+/// The greatest error, and whose it is.
+fn worst<'a>(done: &[&'a FrameRecord]) -> Option<(RelativeError, &'a str)> {
+    let known = done.iter().filter_map(|r| Some((r.relative_error?, r.frame.as_str())));
+    known.max_by(|a, b| a.0.estimate.total_cmp(&b.0.estimate))
+}
+
+/// Over the frames, so that it is the error of the sequence as one picture.
+fn root_mean_square(done: &[&FrameRecord]) -> Option<f64> {
+    let errors: Vec<f64> = done.iter().filter_map(|r| r.relative_error).map(|e| e.estimate).collect();
+    (!errors.is_empty()).then(|| (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt())
+}
+
 fn error_line(done: &[&FrameRecord]) -> Option<String> {
-    let worst = done
-        .iter()
-        .filter_map(|r| r.relative_error.map(|e| (e, &r.frame)))
-        .max_by(|a, b| a.0.estimate.total_cmp(&b.0.estimate));
-    let Some((worst, frame)) = worst else {
+    let (Some((worst, frame)), Some(mean)) = (worst(done), root_mean_square(done)) else {
         let unknown =
             "estimated relative error unknown: it takes at least 2 samples a pixel, 4 with a target";
         return (!done.is_empty()).then(|| unknown.into());
     };
-    let errors: Vec<f64> = done.iter().filter_map(|r| r.relative_error).map(|e| e.estimate).collect();
-    let mean = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
     let percent = |part: f64| 100.0 * part;
     let range = match worst.high.is_finite() {
         true => format!("{:.2} to {:.2} %", percent(worst.low), percent(worst.high)),
@@ -87,7 +115,7 @@ fn error_line(done: &[&FrameRecord]) -> Option<String> {
     let confidence = (1e4 * worst.confidence).round() / 100.0;
     let interval = format!("{range} at {confidence} % confidence");
     let effort = effort(done);
-    Some(if errors.len() == 1 {
+    Some(if done.iter().filter(|r| r.relative_error.is_some()).count() == 1 {
         format!("estimated relative error {:.2} % ({interval}) {effort}", percent(mean))
     } else {
         let worst = percent(worst.estimate);

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
 
 use super::duration::time;
 use super::exit::Exit;
+use super::progress::{ProgressArguments, Reporter, reporter};
 use super::settings::{output_pattern, target_error};
 use super::streams::{print, say};
 use super::watching::Watching;
 use crate::driver::watch::{End, Order};
-use crate::driver::{Interrupt, RenderError, RenderOptions, WatchOptions, WatchReport, watch};
+use crate::driver::{Interrupt, Observer, RenderError, RenderOptions, WatchOptions, WatchReport, watch};
 use crate::sequence::{FrameNumber, SequenceError, format_numbers};
 
 #[derive(Debug, Args)]
@@ -67,12 +69,11 @@ pub struct WatchArguments {
     #[cfg(feature = "serve")]
     #[arg(long, value_name = "ADDRESS", requires = "serve", default_value = "127.0.0.1")]
     serve_address: std::net::IpAddr,
+    #[command(flatten)]
+    progress: ProgressArguments,
     /// Refused with a reason
     #[arg(long, hide = true, allow_hyphen_values = true)]
     shard: Option<String>,
-    /// Only warnings, errors and the summary
-    #[arg(long, short)]
-    quiet: bool,
 }
 
 /// Which frame is drawn first.
@@ -87,6 +88,8 @@ enum Queue {
 
 /// Renders what comes and says what became of it.
 pub fn run(arguments: &WatchArguments) -> Exit {
+    let bars = |quiet, bar| Box::new(Watching::new(quiet, bar)) as Box<dyn Reporter>;
+    let watching = reporter(&arguments.progress, None, bars);
     // Which place a frame has is not known while others come.
     if arguments.shard.is_some() {
         say(
@@ -99,28 +102,30 @@ pub fn run(arguments: &WatchArguments) -> Exit {
     #[cfg(unix)]
     super::signals::obey(&interrupt);
     let options = options(arguments, interrupt);
-    let watching = Watching::new(arguments.quiet);
-    let report = match served(arguments, &options, &watching) {
+    let report = match served(arguments, &options, &*watching) {
         Ok(report) => report,
         Err(exit) => return exit,
     };
-    watching.finish();
-    match report {
+    watching.clear();
+    let (results, exit) = match report {
         Ok(report) => {
             let printed = print(&summary(&report));
             let failures = report.failures.iter().map(|(_, error)| error).chain(&report.trouble);
-            failures.map(Exit::from).fold(printed.max(ended(&report)), Exit::max)
+            (as_json(&report), failures.map(Exit::from).fold(printed.max(ended(&report)), Exit::max))
         }
         Err(error) => {
             say(&format!("error: {error}"));
-            match error {
+            let exit = match error {
                 RenderError::Sequence(SequenceError::NoPlace { .. }) if arguments.output.is_some() => {
                     Exit::Usage
                 }
                 error => Exit::from(&error),
-            }
+            };
+            (Value::Null, exit)
         }
-    }
+    };
+    watching.ended(results, exit);
+    exit
 }
 
 /// How a watch ended, or how the command did that could not begin.
@@ -128,7 +133,7 @@ type Outcome = Result<Result<WatchReport, RenderError>, Exit>;
 
 /// Watches, with a page if one is asked for.
 #[cfg(feature = "serve")]
-fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watching) -> Outcome {
+fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &dyn Observer) -> Outcome {
     use super::serve::{Board, Both, serve};
     let Some(port) = arguments.serve else { return Ok(watch(&arguments.scene, options, watching)) };
     let board = std::sync::Arc::new(Board::default());
@@ -149,7 +154,7 @@ fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watchin
 
 /// Watches.
 #[cfg(not(feature = "serve"))]
-fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &Watching) -> Outcome {
+fn served(arguments: &WatchArguments, options: &WatchOptions, watching: &dyn Observer) -> Outcome {
     Ok(watch(&arguments.scene, options, watching))
 }
 
@@ -184,6 +189,20 @@ fn ended(report: &WatchReport) -> Exit {
         End::Interrupted if !report.pending.is_empty() || report.expected_more => Exit::Interrupted,
         _ => Exit::Complete,
     }
+}
+
+fn as_json(report: &WatchReport) -> Value {
+    let failed: Vec<FrameNumber> = report.failures.iter().map(|(number, _)| *number).collect();
+    let places = report.places.as_ref();
+    json!({
+        "complete": format_numbers(&report.drawn),
+        "failed": format_numbers(&failed),
+        "pending": format_numbers(&report.pending),
+        "interrupted": report.ended == End::Interrupted,
+        "seconds": report.seconds,
+        "pictures": places.map(|(pattern, _)| pattern),
+        "ledger": places.map(|(_, ledger)| ledger),
+    })
 }
 
 fn summary(report: &WatchReport) -> String {

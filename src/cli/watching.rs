@@ -3,6 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use super::progress::Reporter;
 use super::screen::Screen;
 use crate::driver::watch::Phase;
 use crate::driver::{FrameRecord, Job, Observer, Status, WatchStatus};
@@ -15,18 +16,13 @@ pub struct Watching {
 }
 
 impl Watching {
-    /// A changing line when standard error is a terminal; with `quiet` only warnings and errors.
-    pub fn new(quiet: bool) -> Self {
-        let screen = Screen::new(quiet, None, "{spinner} {wide_msg}");
+    /// A changing line when that is wanted and standard error is a terminal; with `quiet` only warnings and errors.
+    pub fn new(quiet: bool, bar: bool) -> Self {
+        let screen = Screen::new(quiet, bar, None, "{spinner} {wide_msg}");
         if screen.terminal {
             screen.bar.enable_steady_tick(Duration::from_millis(250));
         }
         Self { screen, waiting: Mutex::new(None) }
-    }
-
-    /// Takes the changing line away.
-    pub fn finish(&self) {
-        self.screen.finish();
     }
 
     /// Says what is waited for, each time that the waiting begins.
@@ -43,6 +39,12 @@ impl Watching {
             }
             *known = waiting;
         }
+    }
+}
+
+impl Reporter for Watching {
+    fn clear(&self) {
+        self.screen.finish();
     }
 }
 

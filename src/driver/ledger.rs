@@ -1,15 +1,17 @@
 //! The ledger: one JSON line a frame, `ledger.jsonl` beside the pictures. Each shard has its own, `ledger.3.jsonl`: lines
-//! of two machines tear each other on network file systems.
+//! of two machines tear each other on network file systems. [`super::ledgers`] reads all of them.
 //!
 //! It holds what the pictures must not: run times, rays, and how often something rare happened.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::RenderError;
+use super::lap;
 use super::stopping::StoppedBy;
 use crate::accel::Hierarchy;
 use crate::film::{ErrorEstimate, FrameImage};
@@ -17,7 +19,7 @@ use crate::integrator::Counters;
 use crate::sequence::Shard;
 
 /// What became of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// The picture is there.
@@ -30,8 +32,9 @@ pub enum Status {
     Interrupted,
 }
 
-/// A line of the ledger.
-#[derive(Clone, Debug, Serialize)]
+/// A line of the ledger. What a line of an older version lacks is as of a frame of which nothing is known.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(default)]
 pub struct FrameRecord {
     /// Frame number as it is in the file's name.
     pub frame: String,
@@ -69,6 +72,12 @@ pub struct FrameRecord {
     pub render_seconds: f64,
     /// Encoding and writing.
     pub write_seconds: f64,
+    /// CPU seconds of the whole process since it last wrote a line, what makes the next frame ready included.
+    pub cpu_seconds: Option<f64>,
+    /// Threads that rendered.
+    pub threads: usize,
+    /// When this was known, in seconds since 1970 by the clock of the machine.
+    pub ended: Option<f64>,
     /// Samples over all pixels.
     pub samples: u64,
     /// The same of a pixel; `None` when there is no picture.
@@ -98,7 +107,8 @@ pub struct FrameRecord {
 /// What [`Beams`] are made of; nothing where a frame has none.
 ///
 /// [`Beams`]: crate::integrator::Beams
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct BeamRecord {
     /// Triangles and pieces of them, those whose own normal may be taken for the interpolated one twice.
     pub beams: usize,
@@ -109,20 +119,21 @@ pub struct BeamRecord {
 }
 
 /// Estimate and confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RelativeError {
     /// Estimate of the root of the mean relative squared error of this picture.
     pub estimate: f64,
     /// Lower end of the interval.
     pub low: f64,
     /// Upper end; `null` in the ledger where there is none.
+    #[serde(deserialize_with = "or_infinite")]
     pub high: f64,
     /// Its confidence.
     pub confidence: f64,
 }
 
 /// Samples of the pixels of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PerPixel {
     /// Their mean.
     pub mean: f64,
@@ -147,6 +158,17 @@ impl From<ErrorEstimate> for RelativeError {
     }
 }
 
+/// JSON has no number for what has no end.
+fn or_infinite<'de, D: Deserializer<'de>>(value: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(value)?.unwrap_or(f64::INFINITY))
+}
+
+impl Default for FrameRecord {
+    fn default() -> Self {
+        Self::failed(String::new(), None, PathBuf::new())
+    }
+}
+
 impl FrameRecord {
     /// A frame of which nothing is known yet.
     pub fn failed(frame: String, file: Option<PathBuf>, output: PathBuf) -> Self {
@@ -168,6 +190,9 @@ impl FrameRecord {
             wait_seconds: 0.0,
             render_seconds: 0.0,
             write_seconds: 0.0,
+            cpu_seconds: None,
+            threads: 0,
+            ended: None,
             samples: 0,
             samples_per_pixel: None,
             samples_dropped: 0,
@@ -180,6 +205,12 @@ impl FrameRecord {
             left_out: Vec::new(),
             warnings: Vec::new(),
         }
+    }
+
+    /// It is known now what became of the frame.
+    pub(super) fn end(&mut self) {
+        self.cpu_seconds = Some(lap::since_last());
+        self.ended = UNIX_EPOCH.elapsed().ok().map(|time| (1000.0 * time.as_secs_f64()).round() / 1000.0);
     }
 
     /// What the frame adds to the run: waiting for it, rendering and writing.

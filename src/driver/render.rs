@@ -71,7 +71,7 @@ impl RenderOptions {
 
 /// Hears of what happens while frames are rendered.
 pub trait Observer: Sync {
-    /// The frames that will be rendered.
+    /// The frames of which it will be told what became of them.
     fn started(&self, _frames: usize) {}
     /// A frame is begun.
     fn frame(&self, _number: FrameNumber) {}
@@ -142,7 +142,7 @@ pub fn render(
             "shard {shard} has no frame: there are fewer frames than shards, or its own are to come"
         ));
     }
-    observer.started(tasks.len());
+    observer.started(tasks.len() + absent.len());
     if options.frames.is_none() {
         gaps(&job.files).iter().for_each(|gap| observer.warning(&missing(gap)));
     }

@@ -10,6 +10,7 @@ use super::fingerprint::Identity;
 use super::frame_seeds::FrameSeeds;
 use super::job::{FrameTask, Job};
 use super::keeper::Keeper;
+use super::lap;
 use super::ledger::{BeamRecord, FrameRecord, Ledger, PerPixel, Status};
 use super::picture::{FINGERPRINT, MESH_HASH, TIME_BUDGET, denoised_path, picture_path as picture, png_path};
 use super::render::{Observer, RenderOptions, RenderReport};
@@ -54,6 +55,7 @@ impl<'a> Session<'a> {
         let first_picture = picture(pattern, tasks.first().map_or(FrameNumber::ONE, |task| task.number));
         let ledger = Ledger::beside(&first_picture, options.shard)?;
         remove_abandoned(&first_picture);
+        lap::since_last();
         let report = RenderReport {
             frames: Vec::new(),
             already: Vec::new(),
@@ -90,6 +92,7 @@ impl<'a> Session<'a> {
         mut record: FrameRecord,
         outcome: Result<(), RenderError>,
     ) -> bool {
+        record.end();
         let outcome = outcome.inspect_err(|error| record.error = Some(error.to_string()));
         // What became of the picture is worth more than that the ledger could not be written.
         let outcome = outcome.and(self.ledger.append(&record));
@@ -187,6 +190,7 @@ impl<'a> Session<'a> {
         record: &mut FrameRecord,
     ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
+        record.threads = rayon::current_num_threads();
         let needs = &assembled.frame.needs;
         self.sampling.integrator = Integrator::new(&self.settings).on(needs);
         let left_out = self.sampling.integrator.left_out(needs);

@@ -1,6 +1,6 @@
 //! When a frame is done: at its last sample, at its target, or when its time is up.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How good a frame is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Target {
 }
 
 /// Why a frame has no more samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StoppedBy {
     /// There are as many as were asked for.

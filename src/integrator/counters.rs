@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Rays, and events that ought to be rare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Counters {
     /// Rays traced for paths.
     pub rays: u64,
@@ -18,13 +19,10 @@ pub struct Counters {
     /// Rays traced towards lights.
     pub shadow_rays: u64,
     /// Vertices at which the sun was looked for through refracting interfaces.
-    #[serde(default)]
     pub beam_queries: u64,
     /// Triangles that were tried there.
-    #[serde(default)]
     pub beam_candidates: u64,
     /// Ways of the sun that were found, whatever blocks them.
-    #[serde(default)]
     pub beam_roots: u64,
     /// Hits at which the medium that the triangle states is not the one that the path believed to be in.
     pub label_mismatches: u64,

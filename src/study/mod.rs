@@ -9,6 +9,7 @@
 //! * [`metrics`] says how far a picture is from a reference.
 //! * [`distributions`] has the quantiles that tests of pictures need.
 //! * [`plot`] draws results.
+//! * [`report`] says what the ledgers of a sequence tell.
 //! * [`z_test`](mod@z_test) tells a difference from noise.
 //! * [`table`] writes results for people and for programs.
 //! * [`stability`] compares with what is known, where a parameter makes a scene hard.
@@ -22,6 +23,7 @@ pub mod flip;
 pub mod medium;
 pub mod metrics;
 pub mod plot;
+pub mod report;
 pub mod seed_modes;
 pub mod stability;
 pub mod statistics;

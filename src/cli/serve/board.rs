@@ -6,9 +6,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::UNIX_EPOCH;
 
 use serde::Serialize;
-use serde_json::Value;
 
 use crate::cli::watching::describe;
+use crate::driver::ledgers::{LedgerLine, Ledgers};
 use crate::driver::picture::picture_path;
 use crate::driver::watch::Phase;
 use crate::driver::{FrameRecord, Job, Observer, Status, WatchStatus};
@@ -69,20 +69,11 @@ impl Board {
 
     /// Takes up what an earlier watch wrote into the ledger of the same pictures. Where they are follows from the pattern:
     /// what a ledger says may be of another folder, or of anyone.
-    fn recall(&self, ledger: &Path, pattern: &str) {
-        let text = std::fs::read_to_string(ledger).unwrap_or_default();
+    fn recall(&self, folder: &Path, pattern: &str) {
+        let ledgers = Ledgers::in_folder(folder).unwrap_or_default();
         let mut state = self.lock();
-        for line in text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
-            let Some(frame) = line["frame"].as_str() else { continue };
-            let Ok(number) = frame.parse::<FrameNumber>() else { continue };
-            let status = match line["status"].as_str() {
-                Some("complete") => Status::Complete,
-                Some("preview") => Status::Preview,
-                _ => Status::Failed,
-            };
-            let point = [line["render_seconds"].as_f64(), line["relative_error"]["estimate"].as_f64()];
-            let problem = line["error"].as_str().map(str::to_owned);
-            state.put(frame, status, problem, &picture_path(pattern, number), point);
+        for LedgerLine { number, record, .. } in ledgers.lines {
+            state.put(&FrameRecord { output: picture_path(pattern, number), ..record });
         }
     }
 
@@ -147,31 +138,25 @@ impl Observer for Both<'_> {
 }
 
 impl State {
-    fn put(
-        &mut self,
-        frame: &str,
-        status: Status,
-        problem: Option<String>,
-        output: &Path,
-        point: [Option<f64>; 2],
-    ) {
-        let Ok(number) = frame.parse::<FrameNumber>() else { return };
+    fn put(&mut self, record: &FrameRecord) {
+        let Ok(number) = record.frame.parse::<FrameNumber>() else { return };
         self.revision += 1;
         let before = self.frames.remove(&number).map(|entry| (entry.state, entry.points));
-        let (state, mut points) = match (status, before) {
+        let (state, mut points) = match (record.status, before) {
             // A picture joins its preview; anything else begins anew.
             (Status::Complete, Some(("preview", points))) => ("complete", points),
             (Status::Complete, _) => ("complete", Vec::new()),
             (Status::Preview, _) => ("preview", Vec::new()),
             (_, before) => ("failed", before.map(|(_, points)| points).unwrap_or_default()),
         };
-        if let [Some(seconds), Some(error)] = point
+        if let Some(error) = record.relative_error
             && state != "failed"
         {
-            points.push([seconds, error]);
+            points.push([record.render_seconds, error.estimate]);
         }
-        let png = output.with_extension("png");
-        let entry = Entry { frame: frame.into(), revision: self.revision, state, problem, points, png };
+        let png = record.output.with_extension("png");
+        let (frame, problem) = (record.frame.clone(), record.error.clone());
+        let entry = Entry { frame, revision: self.revision, state, problem, points, png };
         self.frames.insert(number, entry);
     }
 }
@@ -179,13 +164,12 @@ impl State {
 impl Observer for Board {
     fn opened(&self, _: &Job, pattern: &str) {
         let picture = picture_path(pattern, FrameNumber::ONE);
-        self.recall(&picture.with_file_name("ledger.jsonl"), pattern);
+        self.recall(picture.parent().unwrap_or(Path::new("")), pattern);
         self.lock().latest = Some(picture.with_file_name("latest.png"));
     }
 
     fn finished(&self, record: &FrameRecord) {
-        let point = [Some(record.render_seconds), record.relative_error.map(|error| error.estimate)];
-        self.lock().put(&record.frame, record.status, record.error.clone(), &record.output, point);
+        self.lock().put(record);
     }
 
     fn watching(&self, status: &WatchStatus) {
@@ -202,6 +186,8 @@ impl Observer for Board {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
 
     fn record(frame: &str, status: Status) -> FrameRecord {
@@ -228,12 +214,15 @@ mod tests {
 
     #[test]
     fn a_ledger_does_not_say_where_pictures_are() {
-        let ledger = tempfile::NamedTempFile::new().unwrap();
+        let folder = tempfile::tempdir().unwrap();
         let line = r#"{"frame":"7","status":"complete","output":"/etc/secret.exr"}"#;
-        std::fs::write(ledger.path(), format!("{line}\n{{\"frame\":\"../8\",\"status\":\"complete\"}}\n"))
-            .unwrap();
+        std::fs::write(
+            folder.path().join("ledger.jsonl"),
+            format!("{line}\n{{\"frame\":\"../8\",\"status\":\"complete\"}}\n"),
+        )
+        .unwrap();
         let board = Board::default();
-        board.recall(ledger.path(), "out/frame_####.exr");
+        board.recall(folder.path(), "out/frame_####.exr");
         assert_eq!(board.png("7"), Some("out/frame_0007.png".into()));
         assert_eq!(board.lock().frames.len(), 1);
     }

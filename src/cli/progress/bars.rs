@@ -1,23 +1,25 @@
-//! What the user sees while frames are rendered: a bar on a terminal, a line a frame elsewhere.
+//! Progress for people: a bar on a terminal, a line a frame elsewhere.
 
-use super::screen::Screen;
+use super::Reporter;
+use crate::cli::screen::Screen;
 use crate::driver::{FrameRecord, Observer, Status};
 use crate::sequence::FrameNumber;
 
 /// Progress on standard error.
-pub struct Progress {
+pub struct Bars {
     screen: Screen,
 }
 
-impl Progress {
-    /// A bar when standard error is a terminal; with `quiet` only warnings and errors.
-    pub fn new(quiet: bool) -> Self {
+impl Bars {
+    /// A bar when that is wanted and standard error is a terminal; with `quiet` only warnings and errors.
+    pub fn new(quiet: bool, bar: bool) -> Self {
         let template = "{wide_bar:.cyan/blue} {percent:>3} %  {msg}  {elapsed}  eta {eta}";
-        Self { screen: Screen::new(quiet, Some(0), template) }
+        Self { screen: Screen::new(quiet, bar, Some(0), template) }
     }
+}
 
-    /// Takes the bar away.
-    pub fn finish(&self) {
+impl Reporter for Bars {
+    fn clear(&self) {
         self.screen.finish();
     }
 }
@@ -25,7 +27,7 @@ impl Progress {
 /// Parts that one frame of the bar is divided into.
 const PARTS: u64 = 1000;
 
-impl Observer for Progress {
+impl Observer for Bars {
     fn started(&self, frames: usize) {
         self.screen.bar.set_length(frames as u64 * PARTS);
     }
