@@ -6,6 +6,7 @@ mod encode;
 mod exit;
 mod files;
 mod info;
+mod merge;
 mod optics;
 mod progress;
 mod render;
@@ -43,6 +44,8 @@ enum Command {
     Render(render::RenderArguments),
     /// Render frames as a simulation writes them
     Watch(watch::WatchArguments),
+    /// Make pictures of frames whose samples several machines have rendered (render --samples-range)
+    Merge(merge::MergeArguments),
     /// Print which frames are there, missing, begun, out of date or damaged
     Status(status::StatusArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
@@ -68,6 +71,7 @@ fn dispatch() -> Exit {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
             Command::Watch(arguments) => watch::run(&arguments),
+            Command::Merge(arguments) => merge::run(&arguments),
             Command::Status(arguments) => status::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
             Command::Encode(arguments) => encode::run(&arguments),

@@ -10,7 +10,7 @@ use super::progress::Progress;
 use super::settings::Settings;
 use super::streams::{print, say};
 use super::summary::summary;
-use crate::driver::{Job, RenderError, RenderOptions, preview, render};
+use crate::driver::{Job, RenderError, RenderOptions, RenderReport, SamplesRange, preview, render};
 use crate::sequence::SequenceError;
 
 #[derive(Debug, Args)]
@@ -20,6 +20,10 @@ pub struct RenderArguments {
     /// Threads that render; one more makes the next frame ready [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Only these of the samples of each pixel (half open), into frame_0001.0-64.partial beside each picture, for `floe merge`
+    /// when others have rendered the rest; give all parts the same --samples
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true, conflicts_with_all = ["preview", "denoise", "target_error", "time_budget"])]
+    samples_range: Option<SamplesRange>,
     /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
     #[arg(long)]
     preview: bool,
@@ -50,6 +54,7 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
         denoise: arguments.denoise,
+        samples_range: arguments.samples_range,
         resume: arguments.resume,
         time_budget: arguments.time_budget,
         checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
@@ -67,6 +72,11 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         render(&job, &options, &progress)
     });
     progress.finish();
+    ended(report, arguments.settings.output.is_some())
+}
+
+/// Says what became of frames; whether the pattern of their names is from the command line.
+pub(super) fn ended(report: Result<RenderReport, RenderError>, names_output: bool) -> Exit {
     match report {
         Ok(report) => {
             let printed = print(&summary(&report));
@@ -77,11 +87,8 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         Err(error) => {
             say(&format!("error: {error}"));
             match error {
-                RenderError::Sequence(SequenceError::NoPlace { .. })
-                    if arguments.settings.output.is_some() =>
-                {
-                    Exit::Usage
-                }
+                RenderError::Sequence(SequenceError::NoPlace { .. }) if names_output => Exit::Usage,
+                RenderError::SamplesRange { .. } => Exit::Usage,
                 error => Exit::from(&error),
             }
         }

@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::error::RenderError;
+use super::samples_range::SamplesRange;
 use super::stopping::StoppedBy;
 use crate::accel::Hierarchy;
 use crate::film::{ErrorEstimate, FrameImage};
@@ -20,6 +21,8 @@ use crate::integrator::Counters;
 pub enum Status {
     /// The picture is there.
     Complete,
+    /// Some of its samples are there, in a file of their own.
+    Partial,
     /// There is a PNG of few samples to look at; the picture is still to come.
     Preview,
     /// There is no picture.
@@ -96,7 +99,7 @@ pub struct FrameRecord {
 /// What [`Beams`] are made of; nothing where a frame has none.
 ///
 /// [`Beams`]: crate::integrator::Beams
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BeamRecord {
     /// Triangles and pieces of them, those whose own normal may be taken for the interpolated one twice.
     pub beams: usize,
@@ -199,7 +202,20 @@ impl Ledger {
     /// # Errors
     /// [`RenderError::CannotCreate`] for the folder or the file.
     pub fn beside(picture: &Path) -> Result<Self, RenderError> {
-        let ledger = Self { path: picture.with_file_name("ledger.jsonl") };
+        Self::named(picture, "ledger.jsonl")
+    }
+
+    /// That of a run for some samples of each frame, `ledger.0-64.jsonl`: lines of two machines tear each other on network
+    /// file systems.
+    ///
+    /// # Errors
+    /// Those of [`beside`](Self::beside).
+    pub fn of_range(picture: &Path, range: SamplesRange) -> Result<Self, RenderError> {
+        Self::named(picture, &format!("ledger.{}-{}.jsonl", range.first, range.end))
+    }
+
+    fn named(picture: &Path, name: &str) -> Result<Self, RenderError> {
+        let ledger = Self { path: picture.with_file_name(name) };
         let folder = picture.parent().unwrap_or(Path::new(""));
         std::fs::create_dir_all(folder)
             .and_then(|()| ledger.open().map(drop))

@@ -6,6 +6,9 @@
 //!
 //! A frame ends with its last sample, at a target for its error, or when its time is up ([`stopping`]).
 //!
+//! Several machines may each draw some samples of a frame ([`samples_range`]); [`merge()`] makes of them the picture that one
+//! run writes.
+//!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
@@ -25,13 +28,18 @@ pub mod job;
 mod keeper;
 mod ladder;
 pub mod ledger;
+pub mod merge;
 pub mod meshes;
+mod partial;
+mod parts;
 mod passes;
 pub mod picture;
 pub mod preview;
 pub mod ready;
 pub mod render;
 mod resume;
+pub mod samples_range;
+mod sealed;
 mod session;
 pub mod stopping;
 pub mod survey;
@@ -46,8 +54,10 @@ pub use fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
 pub use interrupt::Interrupt;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
+pub use merge::merge;
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use samples_range::SamplesRange;
 pub use stopping::{StoppedBy, Target};
 pub use survey::{FrameState, survey};
 pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

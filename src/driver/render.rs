@@ -10,6 +10,7 @@ use super::interrupt::Interrupt;
 use super::job::{FrameTask, Job};
 use super::ledger::FrameRecord;
 use super::resume::left;
+use super::samples_range::SamplesRange;
 use super::session::Session;
 use super::watch::WatchStatus;
 use crate::scene::description::{RenderDescription, SceneDescription};
@@ -26,6 +27,8 @@ pub struct RenderOptions {
     pub output: Option<String>,
     /// Samples a pixel, at most where there is a target.
     pub samples: Option<u32>,
+    /// Of these only some, which become partials instead of pictures.
+    pub samples_range: Option<SamplesRange>,
     /// Relative error at which a frame stops.
     pub target_error: Option<f64>,
     /// Light transport of a frame, in all runs: what is there then is its picture.
@@ -61,7 +64,7 @@ impl RenderOptions {
 
     /// Whether there are to be pictures without noise.
     pub(super) fn wants_denoised(&self, scene: &SceneDescription) -> bool {
-        self.denoise || scene.output.denoise
+        self.samples_range.is_none() && (self.denoise || scene.output.denoise)
     }
 }
 
@@ -113,6 +116,9 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<RenderReport, RenderError> {
+    if let Some(range) = options.samples_range {
+        check_range(range, job, options)?;
+    }
     let (tasks, absent) = chosen(job, options)?;
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
     check_pictures(&pattern, tasks.len())?;
@@ -162,6 +168,32 @@ pub(super) fn chosen(
         Some(&number) if !options.keep_going => Err(not_there(job, number)),
         _ => Ok((tasks, absent)),
     }
+}
+
+/// Checks that a range is of samples whose number is known beforehand.
+fn check_range(range: SamplesRange, job: &Job, options: &RenderOptions) -> Result<(), RenderError> {
+    let scene = &job.world.description;
+    let settings = options.settings(&scene.render);
+    let SamplesRange { first, end } = range;
+    let problem = if settings.target_error.is_some() {
+        format!(
+            "how many samples a frame with a target has is not known beforehand; leave --target-error out, and \
+             target_error out of [render] of {}",
+            scene.file.display()
+        )
+    } else if options.time_budget.is_some() {
+        "samples that time decides on cannot be parted; leave --time-budget out".into()
+    } else if end > settings.samples {
+        format!(
+            "there are {0} samples; end at {0}, or give all parts and the merge --samples {end}",
+            settings.samples
+        )
+    } else if first >= end {
+        "there is no sample in it; write 0..64 for the first 64".into()
+    } else {
+        return Ok(());
+    };
+    Err(RenderError::SamplesRange { range, problem })
 }
 
 fn numbers(job: &Job) -> Vec<FrameNumber> {
