@@ -21,7 +21,7 @@
 //! u_r = w_r (m_r - m) / (1 - sum_r w_r^2)^(1/2)          V = sum_r u_r^2            (2)
 //! ```
 //!
-//! Sums are exact and rounded once, to f64 ([`super::exact`]), so that it is the same picture however samples are
+//! Sums are exact and rounded once, to f64 (`exact.rs`), so that it is the same picture however samples are
 //! grouped. A sample with a number that is not finite is left out and counted.
 
 use std::ops::AddAssign;
