@@ -7,6 +7,7 @@ mod environment;
 mod exit;
 mod files;
 mod info;
+mod merge;
 mod optics;
 mod progress;
 mod render;
@@ -45,6 +46,8 @@ enum Command {
     Render(render::RenderArguments),
     /// Render frames as a simulation writes them
     Watch(watch::WatchArguments),
+    /// Make pictures of frames whose samples several machines have rendered (render --samples-range)
+    Merge(merge::MergeArguments),
     /// Print which frames are there, missing, begun, out of date or damaged
     Status(status::StatusArguments),
     /// Print what the ledgers of rendered frames tell: time, errors, slow frames and shards
@@ -73,6 +76,7 @@ fn dispatch() -> Exit {
         Ok(arguments) => match arguments.command {
             Command::Render(arguments) => render::run(&arguments),
             Command::Watch(arguments) => watch::run(&arguments),
+            Command::Merge(arguments) => merge::run(&arguments),
             Command::Status(arguments) => status::run(&arguments),
             Command::Report(arguments) => report::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),

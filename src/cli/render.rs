@@ -11,7 +11,7 @@ use super::progress::{Bars, ProgressArguments, Reporter, reporter};
 use super::settings::Settings;
 use super::streams::{print, say};
 use super::summary;
-use crate::driver::{Job, RenderError, RenderOptions, preview, render};
+use crate::driver::{Job, RenderError, RenderOptions, RenderReport, SamplesRange, preview, render};
 use crate::sequence::SequenceError;
 
 #[derive(Debug, Args)]
@@ -22,6 +22,10 @@ pub struct RenderArguments {
     /// else all cores that it may use]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Only these of the samples of each pixel (half open), into frame_0001.0-64.partial beside each picture, for `floe merge`
+    /// when others have rendered the rest; give all parts the same --samples
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true, conflicts_with_all = ["preview", "denoise", "target_error", "time_budget"])]
+    samples_range: Option<SamplesRange>,
     /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
     #[arg(long)]
     preview: bool,
@@ -51,6 +55,7 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         threads: arguments.threads.map(usize::from),
         keep_going: arguments.keep_going,
         denoise: arguments.denoise,
+        samples_range: arguments.samples_range,
         resume: arguments.resume,
         time_budget: arguments.time_budget,
         restart: super::environment::restart(),
@@ -69,6 +74,15 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         }
         render(&job, &options, &*progress)
     });
+    ended(&*progress, report, arguments.settings.output.is_some())
+}
+
+/// Says what became of frames; whether the pattern of their names is from the command line.
+pub(super) fn ended(
+    progress: &dyn Reporter,
+    report: Result<RenderReport, RenderError>,
+    names_output: bool,
+) -> Exit {
     progress.clear();
     let (results, exit) = match report {
         Ok(report) => {
@@ -80,11 +94,8 @@ pub fn run(arguments: &RenderArguments) -> Exit {
         Err(error) => {
             say(&format!("error: {error}"));
             let exit = match error {
-                RenderError::Sequence(SequenceError::NoPlace { .. })
-                    if arguments.settings.output.is_some() =>
-                {
-                    Exit::Usage
-                }
+                RenderError::Sequence(SequenceError::NoPlace { .. }) if names_output => Exit::Usage,
+                RenderError::SamplesRange { .. } => Exit::Usage,
                 error => Exit::from(&error),
             };
             (Value::Null, exit)

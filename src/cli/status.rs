@@ -45,6 +45,8 @@ fn name(state: &FrameState) -> &'static str {
     match state {
         FrameState::Complete => "complete",
         FrameState::Cut(_) => "cut",
+        FrameState::Unmerged => "unmerged",
+        FrameState::Parts(_) => "parts",
         FrameState::Partial => "partial",
         FrameState::Missing => "missing",
         FrameState::Stale => "stale",
@@ -53,7 +55,8 @@ fn name(state: &FrameState) -> &'static str {
     }
 }
 
-const NAMES: [&str; 7] = ["complete", "cut", "partial", "missing", "stale", "corrupt", "unreadable"];
+const NAMES: [&str; 9] =
+    ["complete", "cut", "unmerged", "parts", "partial", "missing", "stale", "corrupt", "unreadable"];
 
 fn numbers(states: &States, wanted: &str) -> Vec<FrameNumber> {
     states.iter().filter(|(_, state)| name(state) == wanted).map(|(number, _)| *number).collect()
@@ -61,7 +64,9 @@ fn numbers(states: &States, wanted: &str) -> Vec<FrameNumber> {
 
 fn problem(state: &FrameState) -> Option<&str> {
     match state {
-        FrameState::Corrupt(reason) | FrameState::Unreadable(reason) => Some(reason),
+        FrameState::Parts(reason) | FrameState::Corrupt(reason) | FrameState::Unreadable(reason) => {
+            Some(reason)
+        }
         _ => None,
     }
 }
@@ -74,6 +79,9 @@ fn as_text(states: &States) -> String {
         if !numbers.is_empty() {
             let _ = writeln!(text, "{wanted:<10} {}", format_numbers(&numbers));
         }
+    }
+    if states.iter().any(|(_, state)| *state == FrameState::Unmerged) {
+        text += "unmerged frames have partials of all their samples: `floe merge` makes their pictures\n";
     }
     for (number, state) in states {
         if let Some(problem) = problem(state) {

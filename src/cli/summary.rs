@@ -12,7 +12,8 @@ use crate::sequence::{FrameNumber, format_numbers};
 
 /// Frames, time, estimated error, rare events, what is left out, and where it all is.
 pub fn text(report: &RenderReport) -> String {
-    let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
+    let is_done = |record: &&FrameRecord| matches!(record.status, Status::Complete | Status::Partial);
+    let done: Vec<&FrameRecord> = report.frames.iter().filter(is_done).collect();
     let lines = [
         already_line(report),
         frames_line(report, &done),
@@ -211,7 +212,13 @@ fn places_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
             return Some(format!("no pictures; ledger {}", report.ledger.display()));
         }
         [only] if report.already.is_empty() => only.output.display(),
+        [first, ..] if first.status == Status::Partial => first.output.display(),
         _ => Path::new(&report.pattern).display(),
     };
-    Some(format!("pictures {pictures}; ledger {}", report.ledger.display()))
+    let ledger = report.ledger.display();
+    Some(if done.iter().any(|record| record.status == Status::Partial) {
+        format!("partials {pictures}, for `floe merge` when all samples are there; ledger {ledger}")
+    } else {
+        format!("pictures {pictures}; ledger {ledger}")
+    })
 }

@@ -79,7 +79,7 @@ impl Observer for Watching {
                 return self.screen.line(&format!("frame {} is not done yet", record.frame));
             }
             Status::Preview => "preview",
-            Status::Complete => "frame",
+            Status::Complete | Status::Partial => "frame",
         };
         let error =
             record.relative_error.map_or_else(String::new, |e| format!("error {:.2} %", 100.0 * e.estimate));

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::half_tile::HalfTile;
+use super::samples_range::SamplesRange;
 use super::uniform::next_round;
 use crate::film::{FrameImage, Pixel, PixelAccumulator, Tile, TileRect, tiles};
 use crate::integrator::Counters;
@@ -21,6 +22,8 @@ pub struct Accumulation {
     pub(super) parts: Vec<TilePart>,
     /// What happened to the photons of the passes that are done.
     pub(super) counters: Counters,
+    /// The first sample, where the sums are wanted rather than the pixels.
+    first: Option<u32>,
 }
 
 /// How far a tile has come. Its pixels are rendered one after the other, or get some samples in each round, or are kept
@@ -46,13 +49,52 @@ impl Accumulation {
     pub fn new(resolution: [u32; 2]) -> Self {
         let rects = tiles(resolution[0], resolution[1], TILE_SIZE);
         let parts = vec![TilePart::default(); rects.len()];
-        Self { resolution, rects, parts, counters: Counters::default() }
+        Self { resolution, rects, parts, counters: Counters::default(), first: None }
+    }
+
+    /// A frame of whose samples some, from this index on, are to be summed up.
+    pub(super) fn of_range(resolution: [u32; 2], first: u32) -> Self {
+        let mut begun = Self { first: Some(first), ..Self::new(resolution) };
+        for (part, rect) in begun.parts.iter_mut().zip(&begun.rects) {
+            part.sums = vec![PixelAccumulator::new(); rect.area()];
+            part.passes = first;
+        }
+        begun
+    }
+
+    /// The samples of each pixel before the first that is drawn.
+    pub(super) fn first(&self) -> u32 {
+        self.first.unwrap_or(0)
+    }
+
+    /// The tiles, and what happened to photons.
+    pub(super) fn parts(&self) -> (&[TilePart], &Counters) {
+        (&self.parts, &self.counters)
+    }
+
+    /// Adds the sums over other samples of the same frame; false when they are not those of these samples.
+    #[must_use]
+    pub(super) fn add(&mut self, others: &[TilePart], counters: Counters, range: SamplesRange) -> bool {
+        let fits = |(other, rect): (&TilePart, &TileRect)| other.fits(*rect) && other.holds(range);
+        if others.len() != self.rects.len() || !others.iter().zip(&self.rects).all(fits) {
+            return false;
+        }
+        self.parts.par_iter_mut().zip(others).for_each(|(part, other)| {
+            part.sums.iter_mut().zip(&other.sums).for_each(|(own, other)| *own += other);
+            part.passes += range.count();
+            part.counters += other.counters;
+        });
+        self.counters += counters;
+        true
     }
 
     /// Takes over what was done earlier; false when it is not of a frame of this size.
     #[must_use]
     pub(super) fn restore(&mut self, parts: Vec<TilePart>, counters: Counters) -> bool {
-        let fits = parts.len() == self.rects.len() && parts.iter().zip(&self.rects).all(|(p, r)| p.fits(*r));
+        let keeps_sums =
+            |p: &TilePart| self.first.is_none_or(|first| !p.sums.is_empty() && p.passes >= first);
+        let fits = |(p, r): (&TilePart, &TileRect)| p.fits(*r) && keeps_sums(p);
+        let fits = parts.len() == self.rects.len() && parts.iter().zip(&self.rects).all(fits);
         if fits {
             (self.parts, self.counters) = (parts, counters);
         }
@@ -66,7 +108,9 @@ impl Accumulation {
 
     /// Samples of all pixels so far, where all are to have `limit`; of pixels that are not done, those before.
     pub(super) fn drawn(&self, limit: u32) -> u64 {
-        self.parts.iter().zip(&self.rects).map(|(part, rect)| part.drawn(*rect, limit)).sum()
+        let drawn: u64 =
+            self.parts.iter().zip(&self.rects).map(|(part, rect)| part.drawn(*rect, limit)).sum();
+        drawn - self.pixels() * u64::from(self.first())
     }
 
     /// Samples of each pixel after the next round; tiles that are rendered pixel by pixel get all in it.
@@ -77,7 +121,8 @@ impl Accumulation {
 
     /// Whether any sample is there.
     pub(super) fn is_begun(&self) -> bool {
-        let is_begun = |part: &TilePart| !part.pixels.is_empty() || part.passes > 0 || part.ahead > 0;
+        let is_begun =
+            |part: &TilePart| !part.pixels.is_empty() || part.passes > self.first() || part.ahead > 0;
         self.parts.iter().any(|part| is_begun(part) || part.halves.is_used())
     }
 
@@ -101,6 +146,15 @@ impl Accumulation {
             .map(|(part, rect)| Tile { rect: *rect, pixels: pixels(part) })
             .collect();
         FrameImage::from_tiles(width, height, tiles)
+    }
+
+    /// The picture so far, and what happened on the way, of a frame that is between two rounds.
+    pub(super) fn so_far(&self) -> (FrameImage, Counters) {
+        let image = self.image();
+        let mut counters = self.counters;
+        self.parts.iter().for_each(|part| counters += part.counters);
+        counters.non_finite = image.rejected();
+        (image, counters)
     }
 
     /// The picture, and what happened on the way.
@@ -128,6 +182,12 @@ impl TilePart {
     pub fn drawn(&self, rect: TileRect, limit: u32) -> u64 {
         let area = rect.area() as u64;
         self.pixels.len() as u64 * u64::from(limit) + area * u64::from(self.passes)
+    }
+
+    /// Whether it is the sums over these samples and nothing else.
+    fn holds(&self, range: SamplesRange) -> bool {
+        let is_whole = self.passes == range.end && self.ahead == 0;
+        is_whole && !self.sums.is_empty() && self.sums.iter().all(|sums| sums.has_seen(range.count()))
     }
 
     /// The pixels as they are.

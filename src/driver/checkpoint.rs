@@ -1,32 +1,27 @@
 //! A frame that is not done yet, on the disk: `.frame_0001.checkpoint` beside `frame_0001.exr`.
 //!
 //! ```text
-//! head (what kind of file, sizes of what is in it), fingerprint, tiles, counters and seconds, SHA-256 of all before it
+//! head (what kind of file, sizes of what is in it), fingerprint, tiles, counters and seconds, seal
 //! ```
 //!
 //! Sums are there bit by bit, so a frame that goes on ends as the same bytes. The file is replaced in one step and
 //! belongs to one fingerprint: what another scene, mesh or version left behind is never taken for this frame's.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
 use super::accumulation::{Accumulation, TilePart};
 use super::fingerprint::Fingerprint;
-use crate::film::write::StagedFile;
-use crate::film::{FilmError, HalfSums, Pixel, PixelAccumulator};
+use super::sealed::{self, layout};
+use crate::film::FilmError;
 use crate::integrator::Counters;
 
-/// Bytes of the checksum.
-const CHECKSUM: usize = 32;
-
-/// What a file begins with. Pixels of another size are those of another build.
+/// What a file begins with.
 fn head() -> String {
-    let sizes =
-        [size_of::<Pixel>(), size_of::<PixelAccumulator>(), size_of::<HalfSums>(), size_of::<Counters>()];
-    format!("floe checkpoint 2 {sizes:?}\n")
+    format!("floe checkpoint 3 {}\n", layout())
 }
 
 /// The checkpoint of a picture.
@@ -57,9 +52,9 @@ impl Checkpoint {
     }
 
     /// A hash of the samples in that of a picture, whatever time they took; `None` where there is none.
-    pub fn samples_beside(picture: &Path) -> Option<[u8; CHECKSUM]> {
+    pub fn samples_beside(picture: &Path) -> Option<[u8; sealed::SEAL]> {
         let bytes = std::fs::read(Self::path_beside(picture)).ok()?;
-        let samples = bytes.len().checked_sub(CHECKSUM + size_of::<f64>())?;
+        let samples = bytes.len().checked_sub(sealed::SEAL + size_of::<f64>())?;
         Some(Sha256::digest(&bytes[..samples]).into())
     }
 
@@ -69,16 +64,8 @@ impl Checkpoint {
     /// When it cannot be written; the one before it is left then.
     pub fn save(&self, accumulation: &Accumulation, seconds: f64) -> Result<(), FilmError> {
         let contents = (&accumulation.parts, &accumulation.counters, seconds);
-        StagedFile::written(&self.path, |file| {
-            let mut hashed = Hashed { file, hasher: Sha256::new() };
-            hashed.write_all(head().as_bytes())?;
-            hashed.write_all(&self.fingerprint.0)?;
-            let mut buffered = std::io::BufWriter::with_capacity(1 << 16, hashed);
-            postcard::to_io(&contents, &mut buffered).map_err(std::io::Error::other)?;
-            let Hashed { file, hasher } = buffered.into_inner()?;
-            file.write_all(&hasher.finalize())
-        })?
-        .commit()
+        let head = [head().as_bytes(), &self.fingerprint.0].concat();
+        sealed::write(&self.path, &head, &contents)
     }
 
     /// Puts what it holds into an accumulation and tells the seconds that this took; `None` when there is none.
@@ -101,10 +88,7 @@ impl Checkpoint {
 
     fn decode(&self, bytes: &[u8]) -> Result<Contents, &'static str> {
         let damaged = "is damaged";
-        let (body, checksum) = bytes.split_last_chunk::<CHECKSUM>().ok_or(damaged)?;
-        if Sha256::digest(body).as_slice() != checksum {
-            return Err(damaged);
-        }
+        let body = sealed::unsealed(bytes).ok_or(damaged)?;
         let body = body.strip_prefix(head().as_bytes()).ok_or("was left by another version")?;
         let body = body.strip_prefix(&self.fingerprint.0).ok_or("is of another scene, mesh or frame")?;
         match postcard::take_from_bytes(body) {
@@ -131,28 +115,10 @@ impl Checkpoint {
 /// Tiles, counters, and the seconds that they took.
 type Contents = (Vec<TilePart>, Counters, f64);
 
-/// Hashes what it writes.
-struct Hashed<'a> {
-    file: &'a mut File,
-    hasher: Sha256,
-}
-
-impl Write for Hashed<'_> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.file.write(bytes)?;
-        self.hasher.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.file.flush()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::FilmSample;
+    use crate::film::{FilmSample, PixelAccumulator};
     use glam::Vec3;
 
     const FINGERPRINT: Fingerprint = Fingerprint([3; 16]);

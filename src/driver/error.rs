@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::samples_range::SamplesRange;
 use crate::film::{DenoiseError, FilmError};
 use crate::scene::FrameError;
 use crate::scene::description::SceneError;
@@ -119,6 +120,45 @@ pub enum RenderError {
         /// Of how many.
         rays: u64,
     },
+    /// The samples of a frame cannot be parted so.
+    #[error("--samples-range {range}: {problem}")]
+    SamplesRange {
+        /// What was asked for.
+        range: SamplesRange,
+        /// Why not, and what to do.
+        problem: String,
+    },
+    /// A partial that is no part of the frame, or not the only one.
+    #[error("{path}: the partial {problem}")]
+    Partial {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// Samples that no partial has.
+    #[error(
+        "{picture}: samples {gaps} of {samples} are in no partial beside it; render them with --samples-range {first}, or \
+         wait for those who do"
+    )]
+    NoSamples {
+        /// The picture that is to be.
+        picture: PathBuf,
+        /// The ranges.
+        gaps: String,
+        /// Samples in all.
+        samples: u32,
+        /// The first of the ranges.
+        first: SamplesRange,
+    },
+    /// No frame has anything to be merged.
+    #[error(
+        "there are no partials beside {pictures}: render them with --samples-range, or tell with --output where they are"
+    )]
+    NothingToMerge {
+        /// The pattern of the pictures.
+        pictures: String,
+    },
     /// The run was asked to stop.
     #[error("interrupted; what is done is kept, and the same command with --resume goes on")]
     Interrupted,
@@ -194,15 +234,18 @@ impl RenderError {
     /// Who is to blame.
     pub fn blame(&self) -> Blame {
         match self {
-            Self::Scene(SceneError::Io { .. }) | Self::NotFound { .. } | Self::MissingMesh { .. } => {
-                Blame::Missing
-            }
+            Self::Scene(SceneError::Io { .. })
+            | Self::NotFound { .. }
+            | Self::MissingMesh { .. }
+            | Self::NoSamples { .. }
+            | Self::NothingToMerge { .. } => Blame::Missing,
             Self::Scene(_) | Self::NotUtf8 { .. } => Blame::Configuration,
             Self::Sequence(error) => blame_of_sequence(error),
             Self::NotExr { .. }
             | Self::OtherFolder { .. }
             | Self::NothingToWatch { .. }
             | Self::SeveralMeshes { .. }
+            | Self::SamplesRange { .. }
             | Self::DecimalFrame { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(
@@ -213,7 +256,7 @@ impl RenderError {
             ) => Blame::Configuration,
             Self::Frame(FrameError::Domain { source, .. }) => blame_of_domain(source),
             Self::Frame(FrameError::Sequence(error)) => blame_of_sequence(error),
-            Self::Frame(_) | Self::Mismatches { .. } => Blame::Data,
+            Self::Frame(_) | Self::Mismatches { .. } | Self::Partial { .. } => Blame::Data,
             Self::Film(FilmError::CannotCreate { .. }) | Self::CannotCreate { .. } => Blame::CannotCreate,
             Self::Film(_) | Self::CannotWrite { .. } => Blame::CannotWrite,
             Self::Threads { .. } | Self::Fruitless { .. } | Self::Fault { .. } | Self::Denoise(_) => {

@@ -18,6 +18,7 @@ use super::error::RenderError;
 use super::frame_seeds::FrameSeeds;
 use super::guard::guarded;
 use super::job::FrameTask;
+use super::samples_range::SamplesRange;
 use crate::mesh::{self, VelocityName};
 use crate::scene::FrameError;
 use crate::scene::assembly::FrameMesh;
@@ -31,11 +32,27 @@ use crate::sequence::FrameNumber;
 /// It is raised by one with every change after which any scene may have other pixels, by a single bit of one channel;
 /// so a picture or a checkpoint that another build has left is never taken for one of this. Changes that only make floe
 /// faster, or read what was refused, do not count.
-pub const PIXELS: u32 = 7;
+pub const PIXELS: u32 = 8;
 
 /// What a picture depends on, in 128 bits; 32 hexadecimal digits as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Fingerprint(pub [u8; 16]);
+
+impl Fingerprint {
+    /// Of some samples of the frame.
+    pub(super) fn of_range(&self, range: SamplesRange) -> Self {
+        let mut hasher = Sha256::new();
+        add(&mut hasher, &self.0);
+        add(&mut hasher, range.to_string().as_bytes());
+        Self::taken(hasher)
+    }
+
+    fn taken(hasher: Sha256) -> Self {
+        let mut bits = [0; 16];
+        bits.copy_from_slice(&hasher.finalize()[..16]);
+        Self(bits)
+    }
+}
 
 impl fmt::Display for Fingerprint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -75,9 +92,7 @@ impl Fingerprints {
         add(&mut hasher, format!("{:?}", self.seeds.of_frame(number).ok()).as_bytes());
         add(&mut hasher, meshes.as_flattened());
         add(&mut hasher, others.as_flattened());
-        let mut bits = [0; 16];
-        bits.copy_from_slice(&hasher.finalize()[..16]);
-        Fingerprint(bits)
+        Fingerprint::taken(hasher)
     }
 }
 

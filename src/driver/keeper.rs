@@ -65,7 +65,7 @@ impl<'a> Keeper<'a> {
     }
 
     /// What the frame has taken so far, in all runs.
-    fn seconds(&self) -> f64 {
+    pub fn seconds(&self) -> f64 {
         self.before + self.start.elapsed().as_secs_f64()
     }
 

@@ -12,6 +12,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::RenderError;
 use super::lap;
+use super::samples_range::SamplesRange;
 use super::stopping::StoppedBy;
 use crate::accel::Hierarchy;
 use crate::film::{ErrorEstimate, FrameImage};
@@ -24,6 +25,8 @@ use crate::sequence::Shard;
 pub enum Status {
     /// The picture is there.
     Complete,
+    /// Some of its samples are there, in a file of their own.
+    Partial,
     /// There is a PNG of few samples to look at; the picture is still to come.
     Preview,
     /// There is no picture.
@@ -226,13 +229,20 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// The ledger of a shard, or of a whole run, beside a picture; made if it is not there: a folder that cannot be written to is found out before
+    /// The ledger of a run, of its shard, or of its samples of each frame, beside a picture: lines of two machines tear each
+    /// other on network file systems. It is made if it is not there: a folder that cannot be written to is found out before
     /// anything is rendered.
     ///
     /// # Errors
     /// [`RenderError::CannotCreate`] for the folder or the file.
-    pub fn beside(picture: &Path, shard: Option<Shard>) -> Result<Self, RenderError> {
-        let name = shard.map_or("ledger.jsonl".into(), |shard| format!("ledger.{}.jsonl", shard.number()));
+    pub fn beside(
+        picture: &Path,
+        shard: Option<Shard>,
+        range: Option<SamplesRange>,
+    ) -> Result<Self, RenderError> {
+        let shard = shard.map_or_else(String::new, |shard| format!("{}.", shard.number()));
+        let range = range.map_or_else(String::new, |range| format!("{}-{}.", range.first, range.end));
+        let name = format!("ledger.{shard}{range}jsonl");
         let ledger = Self { path: picture.with_file_name(name) };
         let folder = picture.parent().unwrap_or(Path::new(""));
         std::fs::create_dir_all(folder)
@@ -285,7 +295,7 @@ mod tests {
     #[test]
     fn half_a_line_does_not_spoil_the_next() {
         let folder = tempfile::tempdir().unwrap();
-        let ledger = Ledger::beside(&folder.path().join("a.exr"), "2/3".parse().ok()).unwrap();
+        let ledger = Ledger::beside(&folder.path().join("a.exr"), "2/3".parse().ok(), None).unwrap();
         assert!(ledger.path().ends_with("ledger.2.jsonl"));
         let append = || ledger.append(&FrameRecord::failed("7".into(), None, "a.exr".into())).unwrap();
         append();

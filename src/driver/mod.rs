@@ -6,6 +6,9 @@
 //!
 //! A frame ends with its last sample, at a target for its error, or when its time is up ([`stopping`]).
 //!
+//! Several machines may each draw some samples of a frame ([`samples_range`]); [`merge()`] makes of them the picture that one
+//! run writes.
+//!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
@@ -28,7 +31,10 @@ mod ladder;
 mod lap;
 pub mod ledger;
 pub mod ledgers;
+pub mod merge;
 pub mod meshes;
+mod partial;
+mod parts;
 mod passes;
 pub mod picture;
 pub mod preview;
@@ -36,6 +42,8 @@ pub mod ready;
 pub mod render;
 mod restart;
 mod resume;
+pub mod samples_range;
+mod sealed;
 mod session;
 pub mod stopping;
 pub mod survey;
@@ -50,9 +58,11 @@ pub use fingerprint::{Fingerprint, Fingerprints, FrameSource, Identity};
 pub use interrupt::Interrupt;
 pub use job::Job;
 pub use ledger::{FrameRecord, Status};
+pub use merge::merge;
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
 pub use restart::Restart;
+pub use samples_range::SamplesRange;
 pub use stopping::{StoppedBy, Target};
 pub use survey::{FrameState, survey};
 pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

@@ -24,13 +24,14 @@ impl Work<'_> {
         emitters: &Emitters,
         seconds_left: Option<f64>,
     ) -> Option<StoppedBy> {
+        let before = accumulation.first();
         let Accumulation { rects, parts, .. } = accumulation;
         for (part, rect) in parts.iter_mut().zip(rects.iter()) {
             part.sums.resize(rect.area(), PixelAccumulator::new());
         }
-        let first = parts.iter().map(|part| part.passes).min().unwrap_or(0);
-        let total = rects.len().saturating_mul(self.sampling.samples as usize);
-        let done = AtomicUsize::new(parts.iter().map(|part| part.passes as usize).sum());
+        let first = parts.iter().map(|part| part.passes).min().unwrap_or(before);
+        let total = rects.len().saturating_mul((self.sampling.samples - before) as usize);
+        let done = AtomicUsize::new(parts.iter().map(|part| (part.passes - before) as usize).sum());
         let pace = Pace::new(seconds_left, first.into());
         for index in first..self.sampling.samples {
             if let Some(reason) = self.ends(accumulation, index, &pace) {

@@ -10,8 +10,10 @@ use super::fingerprint::Fingerprints;
 use super::interrupt::Interrupt;
 use super::job::Job;
 use super::ledger::FrameRecord;
+use super::picture::picture_path;
 use super::restart::{Restart, RestartNote};
 use super::resume::left;
+use super::samples_range::SamplesRange;
 use super::session::Session;
 use super::watch::WatchStatus;
 use crate::scene::description::{RenderDescription, SceneDescription};
@@ -28,6 +30,8 @@ pub struct RenderOptions {
     pub output: Option<String>,
     /// Samples a pixel, at most where there is a target.
     pub samples: Option<u32>,
+    /// Of these only some, which become partials instead of pictures.
+    pub samples_range: Option<SamplesRange>,
     /// Relative error at which a frame stops.
     pub target_error: Option<f64>,
     /// Light transport of a frame, in all runs: what is there then is its picture.
@@ -63,9 +67,15 @@ impl RenderOptions {
         }
     }
 
+    /// What is made of a frame: its picture, or the partial of some of its samples.
+    pub(super) fn place(&self, pattern: &str, number: FrameNumber) -> PathBuf {
+        let picture = picture_path(pattern, number);
+        self.samples_range.map_or_else(|| picture.clone(), |range| range.partial_of(&picture))
+    }
+
     /// Whether there are to be pictures without noise.
     pub(super) fn wants_denoised(&self, scene: &SceneDescription) -> bool {
-        self.denoise || scene.output.denoise
+        self.samples_range.is_none() && (self.denoise || scene.output.denoise)
     }
 }
 
@@ -117,6 +127,9 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<RenderReport, RenderError> {
+    if let Some(range) = options.samples_range {
+        check_range(range, job, options)?;
+    }
     let Chosen { tasks, absent, shared } = chosen(job, options)?;
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
     check_pictures(&pattern, shared)?;
@@ -166,6 +179,32 @@ pub fn render(
         note.remove();
     }
     Ok(session.report)
+}
+
+/// Checks that a range is of samples whose number is known beforehand.
+fn check_range(range: SamplesRange, job: &Job, options: &RenderOptions) -> Result<(), RenderError> {
+    let scene = &job.world.description;
+    let settings = options.settings(&scene.render);
+    let SamplesRange { first, end } = range;
+    let problem = if settings.target_error.is_some() {
+        format!(
+            "how many samples a frame with a target has is not known beforehand; leave --target-error out, and \
+             target_error out of [render] of {}",
+            scene.file.display()
+        )
+    } else if options.time_budget.is_some() {
+        "samples that time decides on cannot be parted; leave --time-budget out".into()
+    } else if end > settings.samples {
+        format!(
+            "there are {0} samples; end at {0}, or give all parts and the merge --samples {end}",
+            settings.samples
+        )
+    } else if first >= end {
+        "there is no sample in it; write 0..64 for the first 64".into()
+    } else {
+        return Ok(());
+    };
+    Err(RenderError::SamplesRange { range, problem })
 }
 
 fn missing(gap: &Gap) -> String {

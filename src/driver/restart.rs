@@ -73,7 +73,7 @@ impl RestartNote {
         };
         let left: Vec<FrameNumber> = tasks.iter().filter(is_left).map(|task| task.number).collect();
         let Restart { job, count } = self.restart;
-        let found = self.next(count, digest(&left, pattern, options.resume));
+        let found = self.next(count, digest(&left, pattern, options));
         if let Some(&number) = left.first().filter(|_| found.fruitless >= ENOUGH) {
             let (path, cure) = (self.path.clone(), cure(options));
             return Err(RenderError::Fruitless { path, number, job, count, fruitless: ENOUGH, cure });
@@ -106,12 +106,12 @@ impl RestartNote {
 }
 
 /// Without `resume` nothing goes on from a checkpoint, so that it makes no difference.
-fn digest(left: &[FrameNumber], pattern: &str, resume: bool) -> String {
+fn digest(left: &[FrameNumber], pattern: &str, options: &RenderOptions) -> String {
     let mut hasher = Sha256::new();
     for &number in left {
         hasher.update(number.millionths().to_le_bytes());
-        let samples = Some(picture_path(pattern, number)).filter(|_| resume);
-        hasher.update(samples.and_then(|picture| Checkpoint::samples_beside(&picture)).unwrap_or_default());
+        let place = Some(options.place(pattern, number)).filter(|_| options.resume);
+        hasher.update(place.and_then(|place| Checkpoint::samples_beside(&place)).unwrap_or_default());
     }
     hexadecimal(&hasher.finalize()[..16])
 }

@@ -8,8 +8,10 @@ use rayon::prelude::*;
 use super::checkpoint::Checkpoint;
 use super::fingerprint::Fingerprints;
 use super::job::{FrameTask, Job};
+use super::partial::{self, Wanted};
 use super::picture::{PictureState, denoised_path, picture_path, png_path, read_identity};
 use super::render::{Observer, RenderOptions};
+use super::samples_range::SamplesRange;
 use super::survey::FrameState;
 use crate::film::png::has_exposure;
 use crate::film::{FilmError, write_png_of};
@@ -34,9 +36,15 @@ pub(super) fn left(
     observer: &dyn Observer,
 ) -> Left {
     let denoise = options.wants_denoised(&job.world.description);
+    let range = options.samples_range;
     let state = |task: &FrameTask| {
         let picture = picture_path(pattern, task.number);
-        match FrameState::of(&job.world, fingerprints, task, &picture) {
+        let own = FrameState::of(&job.world, fingerprints, task, &picture);
+        // Samples of a picture that is there are of no use.
+        if let Some(range) = range.filter(|_| own != FrameState::Complete) {
+            return state_of_part(job, fingerprints, task, &picture, (range, options));
+        }
+        match own {
             FrameState::Complete => {
                 Checkpoint::remove_beside(&picture);
                 complete(job, &picture, denoise)
@@ -59,10 +67,15 @@ pub(super) fn left(
             }
             FrameState::Stale => stale.push(task.number),
             FrameState::Corrupt(reason) => {
-                let picture = picture_path(pattern, task.number);
-                observer.warning(&format!("{}: {reason}; it is drawn again", picture.display()));
+                let place = options.place(pattern, task.number);
+                observer.warning(&format!("{}: {reason}; it is drawn again", place.display()));
             }
-            FrameState::Cut(_) | FrameState::Partial | FrameState::Missing | FrameState::Unreadable(_) => {}
+            FrameState::Cut(_)
+            | FrameState::Partial
+            | FrameState::Unmerged
+            | FrameState::Parts(_)
+            | FrameState::Missing
+            | FrameState::Unreadable(_) => {}
         }
         left.tasks.push(task);
     }
@@ -72,6 +85,33 @@ pub(super) fn left(
             .warning(&format!("drawn again since the scene, the settings or the mesh changed: {numbers}"));
     }
     left
+}
+
+/// What there is of some samples of a frame.
+fn state_of_part(
+    job: &Job,
+    fingerprints: &Fingerprints,
+    task: &FrameTask,
+    picture: &Path,
+    (range, options): (SamplesRange, &RenderOptions),
+) -> FrameState {
+    let path = range.partial_of(picture);
+    if !path.exists() {
+        return FrameState::Missing;
+    }
+    let wanted = match Wanted::read(job, fingerprints, options, task) {
+        Ok(wanted) => wanted,
+        Err(error) => return FrameState::Unreadable(error.to_string()),
+    };
+    let label = wanted.label(range);
+    let checked = partial::read_label(&path).and_then(|found| wanted.check(&found));
+    match checked.and_then(|()| partial::read(&path, &label)) {
+        Ok(_) => {
+            Checkpoint::remove_beside(&path);
+            FrameState::Complete
+        }
+        Err(reason) => FrameState::Corrupt(format!("the partial {reason}")),
+    }
 }
 
 /// What is beside a picture that is whole and up to date is brought up to date too.

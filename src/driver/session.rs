@@ -1,5 +1,8 @@
 //! Renders and writes the frames of one run, each when its turn comes.
 
+mod doubts;
+mod part;
+
 use std::path::Path;
 
 use super::accumulation::Accumulation;
@@ -18,7 +21,7 @@ use super::stopping::StoppedBy;
 use super::tiles::{Control, Sampling, accumulate};
 use crate::accel::Hierarchy;
 use crate::film::write::remove_abandoned;
-use crate::film::{Denoiser, ErrorEstimate, FrameImage, ImageMetadata, estimate_error, write_frame};
+use crate::film::{Denoiser, FrameImage, ImageMetadata, estimate_error, write_frame};
 use crate::integrator::{Counters, Integrator};
 use crate::scene::assembly::Assembled;
 use crate::scene::camera::Camera;
@@ -53,7 +56,7 @@ impl<'a> Session<'a> {
         let denoiser = options.wants_denoised(&job.world.description).then(Denoiser::load).transpose()?;
         // A shard may have no frame.
         let first_picture = picture(pattern, tasks.first().map_or(FrameNumber::ONE, |task| task.number));
-        let ledger = Ledger::beside(&first_picture, options.shard)?;
+        let ledger = Ledger::beside(&first_picture, options.shard, options.samples_range)?;
         remove_abandoned(&first_picture);
         lap::since_last();
         let report = RenderReport {
@@ -66,7 +69,8 @@ impl<'a> Session<'a> {
             pattern: pattern.into(),
             ledger: ledger.path().into(),
         };
-        let sampling = Sampling::new(&settings);
+        let samples = options.samples_range.map_or(settings.samples, |range| range.end);
+        let sampling = Sampling { samples, ..Sampling::new(&settings) };
         let seeds = FrameSeeds::new(&job.world.description.render, settings.seed, settings.samples);
         if let Some(text) = seeds.overlap().filter(|_| job.files.len() > 1) {
             observer.warning(&text);
@@ -121,26 +125,24 @@ impl<'a> Session<'a> {
         preparation: Preparation,
     ) -> Option<FrameImage> {
         let mut record = self.record(task, preparation);
-        let outcome = prepared.and_then(|ready| {
-            let output = record.output.clone();
-            let checkpoint = Checkpoint::of(&output, ready.identity.fingerprint);
-            let traced = self.trace(task, &ready.assembled, Some(&checkpoint), &mut record);
-            if let Err(RenderError::Mismatches { .. }) = traced {
-                checkpoint.remove();
-            }
-            let image = traced?;
-            let camera = &ready.assembled.frame.views.opening;
-            let of = Of { number: task.number, identity: &ready.identity, stopped_by: record.stopped_by };
-            let write = || self.write_all(&image, camera, of, &output);
-            timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
-            // A frame that was cut may go on one day.
-            if record.stopped_by != Some(StoppedBy::Time) {
-                checkpoint.remove();
-            }
-            Ok(image)
+        let outcome = prepared.and_then(|ready| match self.options.samples_range {
+            Some(range) => self.some_samples(task, ready, range, &mut record),
+            None => self.whole(task, ready, &mut record),
         });
+        let done = if self.options.samples_range.is_some() { Status::Partial } else { Status::Complete };
+        self.settle(task, record, done, outcome)
+    }
+
+    /// Notes what became of a frame. Its pixels, when it is done.
+    fn settle(
+        &mut self,
+        task: &FrameTask,
+        mut record: FrameRecord,
+        done: Status,
+        outcome: Result<FrameImage, RenderError>,
+    ) -> Option<FrameImage> {
         record.status = match outcome {
-            Ok(_) => Status::Complete,
+            Ok(_) => done,
             Err(RenderError::Interrupted) => Status::Interrupted,
             Err(_) => Status::Failed,
         };
@@ -149,6 +151,41 @@ impl<'a> Session<'a> {
             Err(error) => (None, Err(error)),
         };
         self.conclude(task.number, record, outcome).then_some(image).flatten()
+    }
+
+    /// All samples of a frame, as its picture.
+    fn whole(
+        &mut self,
+        task: &FrameTask,
+        ready: &Ready,
+        record: &mut FrameRecord,
+    ) -> Result<FrameImage, RenderError> {
+        let checkpoint = Checkpoint::of(&record.output, ready.identity.fingerprint);
+        let draw = |session: &Self| session.draw(&ready.assembled.frame, Some(&checkpoint));
+        let traced = self.trace(task, &ready.assembled, true, record, draw);
+        if let Err(RenderError::Mismatches { .. }) = traced {
+            checkpoint.remove();
+        }
+        let image = traced?;
+        self.publish(task, ready, &image, record)?;
+        // A frame that was cut may go on one day.
+        if record.stopped_by != Some(StoppedBy::Time) {
+            checkpoint.remove();
+        }
+        Ok(image)
+    }
+
+    fn publish(
+        &self,
+        task: &FrameTask,
+        ready: &Ready,
+        image: &FrameImage,
+        record: &mut FrameRecord,
+    ) -> Result<(), RenderError> {
+        let camera = &ready.assembled.frame.views.opening;
+        let of = Of { number: task.number, identity: &ready.identity, stopped_by: record.stopped_by };
+        let write = || self.write_all(image, camera, of, &record.output);
+        timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))
     }
 
     /// Renders a frame without writing it; `shown` takes the pixels and puts them where they can be seen.
@@ -161,7 +198,9 @@ impl<'a> Session<'a> {
     ) -> bool {
         let mut record = self.record(task, preparation);
         let outcome = self
-            .trace(task, &ready.assembled, None, &mut record)
+            .trace(task, &ready.assembled, false, &mut record, |session| {
+                session.draw(&ready.assembled.frame, None)
+            })
             .and_then(|image| timed(&mut record.write_seconds, || shown(&image)));
         // What went wrong is told when the picture is to be finished.
         if outcome.is_err() {
@@ -182,12 +221,14 @@ impl<'a> Session<'a> {
         record
     }
 
+    /// What `draw` makes of a frame, with all that is to be told about it.
     fn trace(
         &mut self,
         task: &FrameTask,
         assembled: &Assembled,
-        checkpoint: Option<&Checkpoint>,
+        is_final: bool,
         record: &mut FrameRecord,
+        draw: impl FnOnce(&Self) -> Result<Drawn, RenderError>,
     ) -> Result<FrameImage, RenderError> {
         describe(record, assembled);
         record.threads = rayon::current_num_threads();
@@ -199,8 +240,8 @@ impl<'a> Session<'a> {
             self.observer.warning(warning);
         }
         self.sampling.seed = self.seeds.of_frame(task.number)?;
-        let drawn = timed(&mut record.render_seconds, || self.draw(&assembled.frame, checkpoint));
-        let Drawn { image, counters, beams, stopped_by, dropped } = drawn.ok_or(RenderError::Interrupted)?;
+        let drawn = timed(&mut record.render_seconds, || draw(self))?;
+        let Drawn { image, counters, beams, stopped_by, dropped } = drawn;
         record.counters = counters;
         record.beams = beams;
         record.samples = image.samples();
@@ -209,8 +250,8 @@ impl<'a> Session<'a> {
         record.stopped_by = Some(stopped_by);
         let estimate = estimate_error(&image, self.settings.confidence);
         record.relative_error = estimate.map(Into::into);
-        // That a preview is noisy is no news.
-        let doubt = checkpoint.and_then(|_| self.doubt(record, estimate));
+        // That a preview is noisy, or some of the samples are, is no news.
+        let doubt = is_final.then(|| self.doubt(record, estimate)).flatten();
         for text in doubt.into_iter().chain(self.missed(record, estimate)) {
             self.observer.warning(&text);
             record.warnings.push(text);
@@ -234,74 +275,36 @@ impl<'a> Session<'a> {
         Ok(image)
     }
 
-    /// Draws a frame, or goes on with one that has a checkpoint; `None` when the run is to stop before it is done.
-    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Option<Drawn> {
+    /// Draws a frame, or goes on with one that has a checkpoint.
+    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Result<Drawn, RenderError> {
         let mut accumulation = Accumulation::new(frame.views.opening.resolution());
-        let loaded = checkpoint.filter(|_| self.options.resume).map(|c| c.load(&mut accumulation));
+        let (stopped_by, keeper) = self.go_on(&mut accumulation, frame, checkpoint)?;
+        let in_halves = accumulation.in_halves();
+        let (image, counters) = accumulation.finish();
+        let dropped = in_halves.saturating_sub(image.samples());
+        Ok(Drawn { image, counters, beams: keeper.beams(), stopped_by, dropped })
+    }
+
+    /// Draws until no more samples are needed; an error when the run is to stop before.
+    fn go_on<'b>(
+        &'b self,
+        accumulation: &mut Accumulation,
+        frame: &Frame,
+        checkpoint: Option<&'b Checkpoint>,
+    ) -> Result<(StoppedBy, Keeper<'b>), RenderError> {
+        let loaded = checkpoint.filter(|_| self.options.resume).map(|c| c.load(accumulation));
         let mut keeper = Keeper::new(self.observer, self.options, checkpoint);
         match loaded {
             Some(Ok(Some(seconds))) => keeper.goes_on(seconds),
             Some(Err(reason)) => self.observer.warning(&reason),
             Some(Ok(None)) | None => {}
         }
-        let stopped_by = accumulate(&mut accumulation, frame, &self.sampling, &keeper);
+        let stopped_by = accumulate(accumulation, frame, &self.sampling, &keeper);
         let may_go_on = stopped_by.is_none_or(|reason| reason == StoppedBy::Time);
         if may_go_on && accumulation.is_begun() {
-            keeper.save(&accumulation);
+            keeper.save(accumulation);
         }
-        let stopped_by = stopped_by?;
-        let in_halves = accumulation.in_halves();
-        let (image, counters) = accumulation.finish();
-        let dropped = in_halves.saturating_sub(image.samples());
-        Some(Drawn { image, counters, beams: keeper.beams(), stopped_by, dropped })
-    }
-
-    /// What to tell of a frame whose error is not sure.
-    fn doubt(&self, record: &FrameRecord, estimate: Option<ErrorEstimate>) -> Option<String> {
-        let doubt = estimate?.warning()?;
-        let cure = match self.sampling.integrator {
-            Integrator::Photon(_) | Integrator::Beams(_) => "more samples tell",
-            _ => "more samples tell, and integrator = \"photon\" finds what chance does not",
-        };
-        Some(format!("frame {}: {doubt}; {cure}", record.frame))
-    }
-
-    /// What to tell of a frame that has all its samples and more error than it was to have.
-    fn missed(&self, record: &FrameRecord, estimate: Option<ErrorEstimate>) -> Option<String> {
-        let target = self.settings.target_error.filter(|_| record.stopped_by == Some(StoppedBy::Samples))?;
-        let samples = self.settings.samples;
-        let Some(ErrorEstimate { relative, high, .. }) = estimate else {
-            return Some(format!(
-                "frame {}: with samples = {samples} its error is unknown; let it have 16 at least",
-                record.frame
-            ));
-        };
-        if high.is_infinite() {
-            return Some(format!(
-                "frame {}: its error is above the target of {} with all {samples} samples a pixel, and nobody can say \
-                 by how much",
-                record.frame,
-                percent(target)
-            ));
-        }
-        let cure = match samples_for(target, high, samples) {
-            None => "so small a target takes more samples than floe can count".into(),
-            Some(needed) => {
-                // Radii that shrink keep some of the noise: photons need more.
-                let is_shrinking = matches!(self.sampling.integrator, Integrator::Photon(_));
-                let about = if is_shrinking { "no fewer than" } else { "about" };
-                format!("{about} {needed} would do: write samples = {needed} into [render] of the scene file")
-            }
-        };
-        (high > target).then(|| {
-            format!(
-                "frame {}: its error, {} (up to {}), is above the target of {} with all {samples} samples a pixel; {cure}",
-                record.frame,
-                percent(relative),
-                percent(high),
-                percent(target)
-            )
-        })
+        stopped_by.map(|reason| (reason, keeper)).ok_or(RenderError::Interrupted)
     }
 
     /// Writes the picture and, if that is asked for, `frame_0001.denoised.exr` beside `frame_0001.exr`.
@@ -415,19 +418,6 @@ struct Drawn {
     dropped: u64,
 }
 
-/// Samples that bring an error down to a target, as the squared error falls while their number grows; `None` beyond what
-/// may be asked for.
-fn samples_for(target: f64, error: f64, samples: u32) -> Option<u32> {
-    let needed = (f64::from(samples) * (error / target) * (error / target)).ceil();
-    (needed <= f64::from(u32::MAX)).then_some(needed as u32)
-}
-
-/// Down to the smallest target, of 0.0001 %.
-fn percent(part: f64) -> String {
-    let digits = if part < 1e-4 { 5 } else { 3 };
-    format!("{:.digits$} %", 100.0 * part)
-}
-
 fn describe(record: &mut FrameRecord, assembled: &Assembled) {
     let frame = &assembled.frame;
     record.triangles = frame.geometry.triangles.len();
@@ -446,16 +436,4 @@ fn describe(record: &mut FrameRecord, assembled: &Assembled) {
         format!("exact scattering in \"{}\" (similarity {}, biased)", reduced.medium, reduced.order)
     }));
     record.left_out.extend(assembled.reflected.iter().map(ToString::to_string));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_said_to_be_needed_may_be_asked_for() {
-        assert_eq!(samples_for(0.01, 0.02, 64), Some(256));
-        assert_eq!(samples_for(0.01, 0.010_000_01, 64), Some(65));
-        assert_eq!(samples_for(1e-6, 0.5, 64), None);
-    }
 }

@@ -10,6 +10,8 @@ use super::chosen::{Chosen, chosen, not_there};
 use super::error::RenderError;
 use super::fingerprint::{Fingerprints, FrameSource};
 use super::job::{FrameTask, Job};
+use super::partial::Wanted;
+use super::parts::{among, folder_of, labels, names_in};
 use super::picture::{PictureState, picture_path};
 use super::render::RenderOptions;
 use crate::scene::world::World;
@@ -26,6 +28,10 @@ pub enum FrameState {
     Partial,
     /// Nothing.
     Missing,
+    /// Partials of all its samples: they have only to be merged.
+    Unmerged,
+    /// Partials, but not of all samples or not of this frame, with what is wrong.
+    Parts(String),
     /// A whole picture of another scene, other settings or another mesh.
     Stale,
     /// A picture that is damaged, with what is wrong.
@@ -66,9 +72,22 @@ pub fn survey(
     let pattern = options.output.clone().unwrap_or_else(|| job.output_pattern());
     let Chosen { tasks, absent, .. } = chosen(job, &RenderOptions { keep_going: true, ..options.clone() })?;
     let fingerprints = Fingerprints::new(&job.world, &options.settings(&job.world.description.render));
+    let first = tasks.first().map(|task| picture_path(&pattern, task.number));
+    let partials = first.map(|picture| names_in(folder_of(&picture))).unwrap_or_default();
     let state = |task: &FrameTask| {
         let picture = picture_path(&pattern, task.number);
-        (task.number, FrameState::of(&job.world, &fingerprints, task, &picture))
+        let state = FrameState::of(&job.world, &fingerprints, task, &picture);
+        let partials = among(&picture, &partials);
+        let has_picture = matches!(state, FrameState::Complete | FrameState::Cut(_));
+        if partials.is_empty() || has_picture {
+            return (task.number, state);
+        }
+        let found = Wanted::read(job, &fingerprints, options, task)
+            .and_then(|wanted| labels(&wanted, &picture, &partials));
+        (
+            task.number,
+            found.map_or_else(|error| FrameState::Parts(error.to_string()), |_| FrameState::Unmerged),
+        )
     };
     let mut states: Vec<(FrameNumber, FrameState)> = tasks.par_iter().map(state).collect();
     let missing = |number| (number, FrameState::Unreadable(not_there(job, number).to_string()));

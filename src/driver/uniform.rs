@@ -1,7 +1,8 @@
 //! The same number of samples in every pixel: tile by tile, or in rounds of all tiles where time may be up before.
 //!
 //! Either way the samples of a pixel are added one after the other, so that the picture is the same to the bit. A frame
-//! that was begun in one way goes on in the other: a tile keeps to the way that it was begun in.
+//! that was begun in one way goes on in the other: a tile keeps to the way that it was begun in. Where sums are wanted rather
+//! than pixels, there are rounds.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -43,7 +44,7 @@ impl Work<'_> {
     /// Goes on until every pixel has so many samples, or all.
     fn bring_to(&self, accumulation: &mut Accumulation, to: u32) -> bool {
         let limit = self.sampling.samples;
-        let total = accumulation.pixels() as usize * limit as usize;
+        let total = accumulation.pixels() as usize * (limit - accumulation.first()) as usize;
         let done = AtomicUsize::new(accumulation.drawn(limit) as usize);
         let is_done = |part: &TilePart, rect: TileRect| part.samples(rect, limit) >= to;
         over_tiles(accumulation, self.control, is_done, |part, rect, scratch, rest| {

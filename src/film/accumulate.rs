@@ -21,12 +21,16 @@
 //! u_r = w_r (m_r - m) / (1 - sum_r w_r^2)^(1/2)          V = sum_r u_r^2            (2)
 //! ```
 //!
-//! Sums are f64. A sample with a number that is not finite is left out and counted.
+//! Sums are exact and rounded once, to f64 (`exact.rs`), so that it is the same picture however samples are
+//! grouped. A sample with a number that is not finite is left out and counted.
+
+use std::ops::AddAssign;
 
 use glam::{DVec3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::sums::{Features, Replicate, filled, in_range, samples, sum_of_squares, variance_of_mean};
+use super::exact::ExactSums;
+use super::sums::{Features, Replicate, filled, in_range, sum_of_squares, variance_of_mean};
 
 /// Independent replicates of a pixel's samples.
 pub const REPLICATES: usize = crate::sampling::REPLICATES as usize;
@@ -145,9 +149,17 @@ impl Default for Pixel {
 /// Sums over the samples of one pixel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PixelAccumulator {
-    replicates: [Replicate; REPLICATES],
-    features: Features,
+    /// Radiance of each replicate, and what [`Features`] are made of.
+    sums: ExactSums,
+    /// Samples of each replicate.
+    samples: [u32; REPLICATES],
+    hits: u32,
+    rejected: u32,
 }
+
+/// Where the sums of features begin: those of all samples, and of samples with a first surface.
+const FEATURES: usize = 3 * REPLICATES;
+const SURFACES: usize = FEATURES + 7;
 
 impl PixelAccumulator {
     /// An accumulator without samples.
@@ -159,27 +171,46 @@ impl PixelAccumulator {
     #[inline]
     pub fn add(&mut self, replicate: usize, sample: &FilmSample) {
         if !cfg!(floe_without_guards) && !sample.is_finite() {
-            self.features.rejected += 1;
+            self.rejected += 1;
             return;
         }
-        self.replicates[replicate % REPLICATES].add(sample);
-        self.features.add(sample);
+        let replicate = replicate % REPLICATES;
+        self.samples[replicate] += 1;
+        self.sums.add(3 * replicate, sample.radiance.to_array());
+        let ([r, g, b], [x, y, z]) = (sample.albedo.to_array(), sample.normal.to_array());
+        self.sums.add(FEATURES, [sample.alpha, r, g, b, x, y, z]);
+        if sample.hit {
+            let ([x, y, z], [u, v]) = (sample.position.to_array(), sample.motion.to_array());
+            self.hits += 1;
+            self.sums.add(SURFACES, [x, y, z, sample.depth, u, v]);
+        }
     }
 
     /// Samples in the sums so far.
     pub fn samples(&self) -> u32 {
-        samples(&self.replicates)
+        self.samples.iter().sum()
+    }
+
+    /// Whether so many samples have come, those included that were left out; of sums that may be anyone's.
+    pub(crate) fn has_seen(&self, samples: u32) -> bool {
+        let kept: u64 = self.samples.iter().map(|&n| u64::from(n)).sum();
+        kept + u64::from(self.rejected) == u64::from(samples) && u64::from(self.hits) <= kept
     }
 
     /// Means and variances of what was added.
     pub fn finish(&self) -> Pixel {
         let samples = self.samples();
         if samples == 0 {
-            return Pixel { rejected: self.features.rejected, ..Pixel::EMPTY };
+            return Pixel { rejected: self.rejected, ..Pixel::EMPTY };
         }
         let n = f64::from(samples);
-        let mean = self.replicates.iter().map(|r| r.radiance).sum::<DVec3>() / n;
-        let (channels, deviations) = variance_of_mean(&self.replicates, mean, n).unwrap_or_default();
+        let sums = self.sums.values();
+        let replicates: [Replicate; REPLICATES] = std::array::from_fn(|r| Replicate {
+            radiance: DVec3::from_slice(&sums[3 * r..]),
+            samples: self.samples[r],
+        });
+        let mean = replicates.iter().map(|r| r.radiance).sum::<DVec3>() / n;
+        let (channels, deviations) = variance_of_mean(&replicates, mean, n).unwrap_or_default();
         let (variance, luminance_variance) = in_range(channels, sum_of_squares(deviations));
         Pixel {
             rgb: mean.as_vec3(),
@@ -187,9 +218,21 @@ impl PixelAccumulator {
             luminance_variance,
             deviations: deviations.map(|d| d as f32),
             samples,
-            replicates: filled(&self.replicates).count() as u32,
-            ..self.features.pixel(n)
+            replicates: filled(&replicates).count() as u32,
+            rejected: self.rejected,
+            ..Features::of(&sums[FEATURES..], self.hits).pixel(n)
         }
+    }
+}
+
+impl AddAssign<&Self> for PixelAccumulator {
+    fn add_assign(&mut self, other: &Self) {
+        self.sums += &other.sums;
+        for (own, other) in self.samples.iter_mut().zip(other.samples) {
+            *own += other;
+        }
+        self.hits += other.hits;
+        self.rejected += other.rejected;
     }
 }
 

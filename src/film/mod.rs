@@ -7,7 +7,7 @@
 //! ```
 //!
 //! * [`filter`] places the samples of a pixel so that each counts with weight one in its own pixel.
-//! * [`accumulate`] takes means in double precision and the variance of each mean from independent replicates.
+//! * [`accumulate`] takes means of exact sums and the variance of each mean from independent replicates.
 //! * [`halves`] keeps the two halves of a pixel's samples apart where one decides about the other.
 //! * [`frame_image`] cuts a frame into tiles and puts it together again; the order of the tiles has no influence.
 //! * [`estimate`] says how far a frame is from the converged picture, with a confidence interval.
@@ -23,6 +23,7 @@ pub mod accumulate;
 pub mod denoise;
 pub mod error;
 pub mod estimate;
+mod exact;
 pub mod exr;
 mod exr_channels;
 mod exr_header;

@@ -89,6 +89,20 @@ pub(super) struct Features {
 }
 
 impl Features {
+    /// Of sums in the order of the fields, and of the samples with a first surface.
+    pub fn of(sums: &[f64], hits: u32) -> Self {
+        Self {
+            alpha: sums[0],
+            albedo: DVec3::from_slice(&sums[1..]),
+            normal: DVec3::from_slice(&sums[4..]),
+            position: DVec3::from_slice(&sums[7..]),
+            depth: sums[10],
+            motion: DVec2::from_slice(&sums[11..]),
+            hits: hits.into(),
+            rejected: 0,
+        }
+    }
+
     pub fn add(&mut self, sample: &FilmSample) {
         self.alpha += f64::from(sample.alpha);
         self.albedo += sample.albedo.as_dvec3();

@@ -65,21 +65,23 @@ impl Counters {
 }
 
 impl AddAssign for Counters {
+    /// Counts that were read may be anything, and end at the greatest.
     fn add_assign(&mut self, other: Self) {
-        self.rays += other.rays;
-        self.untraced += other.untraced;
-        self.photons += other.photons;
-        self.astray_photons += other.astray_photons;
-        self.shadow_rays += other.shadow_rays;
-        self.beam_queries += other.beam_queries;
-        self.beam_candidates += other.beam_candidates;
-        self.beam_roots += other.beam_roots;
-        self.label_mismatches += other.label_mismatches;
-        self.non_finite += other.non_finite;
-        self.escaped_inside += other.escaped_inside;
-        self.depth_limited += other.depth_limited;
-        self.cut += other.cut;
-        self.trapped += other.trapped;
+        let add = |own: &mut u64, other: u64| *own = own.saturating_add(other);
+        add(&mut self.rays, other.rays);
+        add(&mut self.untraced, other.untraced);
+        add(&mut self.photons, other.photons);
+        add(&mut self.astray_photons, other.astray_photons);
+        add(&mut self.shadow_rays, other.shadow_rays);
+        add(&mut self.beam_queries, other.beam_queries);
+        add(&mut self.beam_candidates, other.beam_candidates);
+        add(&mut self.beam_roots, other.beam_roots);
+        add(&mut self.label_mismatches, other.label_mismatches);
+        add(&mut self.non_finite, other.non_finite);
+        add(&mut self.escaped_inside, other.escaped_inside);
+        add(&mut self.depth_limited, other.depth_limited);
+        add(&mut self.cut, other.cut);
+        add(&mut self.trapped, other.trapped);
     }
 }
 

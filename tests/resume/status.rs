@@ -40,7 +40,8 @@ fn json_has_the_same() {
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let expected = serde_json::json!({
         "frames": 3, "pictures": "out/boxes/frame_####.exr",
-        "complete": "1", "cut": "", "partial": "", "missing": "3", "stale": "", "corrupt": "2", "unreadable": "",
+        "complete": "1", "cut": "", "unmerged": "", "parts": "", "partial": "", "missing": "3", "stale": "",
+        "corrupt": "2", "unreadable": "",
         "problems": [{ "frame": "2", "problem": "it is not an OpenEXR file" }],
     });
     assert_eq!(json, expected);

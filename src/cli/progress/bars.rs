@@ -55,7 +55,7 @@ impl Observer for Bars {
             self.screen.line(&format!("frame {:>6}  interrupted", record.frame));
         } else if let Some(error) = &record.error {
             self.screen.line(&format!("error: frame {}: {error}", record.frame));
-        } else if !self.screen.quiet && record.status == Status::Complete {
+        } else if !self.screen.quiet && matches!(record.status, Status::Complete | Status::Partial) {
             let error = record
                 .relative_error
                 .map_or_else(|| "error unknown".into(), |e| format!("error {:.2} %", 100.0 * e.estimate));

@@ -80,7 +80,7 @@ fn a_line_is_read_as_it_was_written() {
     record.relative_error = Some(estimate);
     record.counters.rays = u64::MAX;
     record.end();
-    Ledger::beside(&picture, None).unwrap().append(&record).unwrap();
+    Ledger::beside(&picture, None, None).unwrap().append(&record).unwrap();
     let ledgers = Ledgers::in_folder(folder.path()).unwrap();
     assert_eq!(format!("{:?}", ledgers.lines[0].record), format!("{record:?}"));
     assert!(record.ended > Some(1.7e9) && record.cpu_seconds >= Some(0.0), "{record:?}");

@@ -98,6 +98,8 @@ impl State {
             Status::Failed => Self::Failed,
             Status::Interrupted => Self::Interrupted,
             Status::Preview => Self::Preview,
+            // Some of its samples: its picture is still to be merged.
+            Status::Partial => Self::Interrupted,
         }
     }
 
