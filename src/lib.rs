@@ -34,6 +34,9 @@
 
 #![doc = include_str!("references.md")]
 
+/// The vectors that meshes are made of.
+pub use glam;
+
 pub mod geometry;
 pub mod sampling;
 pub mod spectrum;

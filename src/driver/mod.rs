@@ -6,6 +6,8 @@
 //!
 //! A frame ends with its last sample, at a target for its error, or when its time is up ([`stopping`]).
 //!
+//! A [`Renderer`] draws meshes that are in memory.
+//!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
@@ -17,7 +19,7 @@ mod checkpoint;
 pub mod error;
 pub mod fingerprint;
 pub mod frame_seeds;
-mod guard;
+pub(crate) mod guard;
 mod half_tile;
 mod halves;
 pub mod interrupt;
@@ -31,6 +33,8 @@ pub mod picture;
 pub mod preview;
 pub mod ready;
 pub mod render;
+pub mod rendered;
+pub mod renderer;
 mod resume;
 mod session;
 pub mod stopping;
@@ -48,6 +52,8 @@ pub use job::Job;
 pub use ledger::{FrameRecord, Status};
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use rendered::Rendered;
+pub use renderer::Renderer;
 pub use stopping::{StoppedBy, Target};
 pub use survey::{FrameState, survey};
 pub use watch::{WatchOptions, WatchReport, WatchStatus, watch};

@@ -35,7 +35,8 @@ pub(super) struct Session<'a> {
     sampling: Sampling,
     seeds: FrameSeeds,
     denoiser: Option<Denoiser>,
-    ledger: Ledger,
+    /// None where frames stay in memory.
+    ledger: Option<Ledger>,
     pub report: RenderReport,
     observer: &'a dyn Observer,
 }
@@ -48,11 +49,26 @@ impl<'a> Session<'a> {
         pattern: &str,
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
-        let settings = options.settings(&job.world.description.render);
         let denoiser = options.wants_denoised(&job.world.description).then(Denoiser::load).transpose()?;
         let first_picture = tasks.first().map_or_else(PathBuf::new, |t| picture(pattern, t.number));
         let ledger = Ledger::beside(&first_picture)?;
         remove_abandoned(&first_picture);
+        Ok(Self { denoiser, ..Self::with(job, options, observer, pattern, Some(ledger)) })
+    }
+
+    /// A session whose frames stay in memory.
+    pub fn unrecorded(job: &'a Job, options: &'a RenderOptions, observer: &'a dyn Observer) -> Self {
+        Self::with(job, options, observer, "", None)
+    }
+
+    fn with(
+        job: &'a Job,
+        options: &'a RenderOptions,
+        observer: &'a dyn Observer,
+        pattern: &str,
+        ledger: Option<Ledger>,
+    ) -> Self {
+        let settings = options.settings(&job.world.description.render);
         let report = RenderReport {
             frames: Vec::new(),
             already: Vec::new(),
@@ -61,25 +77,15 @@ impl<'a> Session<'a> {
             skipped: 0,
             seconds: 0.0,
             pattern: pattern.into(),
-            ledger: ledger.path().into(),
+            ledger: ledger.as_ref().map_or_else(PathBuf::new, |ledger| ledger.path().into()),
         };
         let sampling = Sampling::new(&settings);
         let seeds = FrameSeeds::new(&job.world.description.render, settings.seed, settings.samples);
         if let Some(text) = seeds.overlap().filter(|_| job.files.len() > 1) {
             observer.warning(&text);
         }
-        Ok(Self {
-            job,
-            options,
-            pattern: pattern.into(),
-            settings,
-            sampling,
-            seeds,
-            denoiser,
-            ledger,
-            report,
-            observer,
-        })
+        let (denoiser, pattern) = (None, pattern.into());
+        Self { job, options, pattern, settings, sampling, seeds, denoiser, ledger, report, observer }
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -91,7 +97,7 @@ impl<'a> Session<'a> {
     ) -> bool {
         let outcome = outcome.inspect_err(|error| record.error = Some(error.to_string()));
         // What became of the picture is worth more than that the ledger could not be written.
-        let outcome = outcome.and(self.ledger.append(&record));
+        let outcome = outcome.and(self.ledger.as_ref().map_or(Ok(()), |ledger| ledger.append(&record)));
         record.error = outcome.as_ref().err().map(ToString::to_string);
         self.observer.finished(&record);
         self.report.frames.push(record);
@@ -167,7 +173,8 @@ impl<'a> Session<'a> {
         self.conclude(task.number, record, outcome)
     }
 
-    fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
+    /// What is known of a frame that is ready.
+    pub fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
         let output = picture(&self.pattern, task.number);
         let mut record = FrameRecord::failed(task.number.to_string(), task.files.first().cloned(), output);
         record.read_seconds = preparation.read_seconds;
@@ -178,7 +185,8 @@ impl<'a> Session<'a> {
         record
     }
 
-    fn trace(
+    /// Draws a frame that is ready; without a checkpoint nothing of it is kept on the way.
+    pub fn trace(
         &mut self,
         task: &FrameTask,
         assembled: &Assembled,
@@ -205,7 +213,8 @@ impl<'a> Session<'a> {
         let estimate = estimate_error(&image, self.settings.confidence);
         record.relative_error = estimate.map(Into::into);
         // That a preview is noisy is no news.
-        let doubt = checkpoint.and_then(|_| self.doubt(record, estimate));
+        let is_preview = checkpoint.is_none() && self.ledger.is_some();
+        let doubt = if is_preview { None } else { self.doubt(record, estimate) };
         for text in doubt.into_iter().chain(self.missed(record, estimate)) {
             self.observer.warning(&text);
             record.warnings.push(text);
@@ -323,9 +332,18 @@ impl<'a> Session<'a> {
         path: &Path,
         denoised: bool,
     ) -> Result<(), RenderError> {
+        let output = &self.job.world.description.output;
+        let metadata = self.metadata(camera, of, denoised);
+        // The other layers are those of the picture with its noise.
+        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
+        let png = png_path(&self.job.world.description, path);
+        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
+    }
+
+    /// What the header of a picture says.
+    pub fn metadata(&self, camera: &Camera, of: Of<'_>, denoised: bool) -> ImageMetadata {
         let world = &self.job.world;
-        let output = &world.description.output;
-        let metadata = ImageMetadata {
+        ImageMetadata {
             frame_number: of.number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
             fps: world.fps(),
             world_to_camera: camera.world_to_camera(world.origin),
@@ -335,11 +353,7 @@ impl<'a> Session<'a> {
                 .into_iter()
                 .chain(denoised.then(|| ("floe:denoised".into(), "Open Image Denoise".into())))
                 .collect(),
-        };
-        // The other layers are those of the picture with its noise.
-        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
-        let png = png_path(&world.description, path);
-        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
+        }
     }
 
     /// The seconds after which a frame was cut, if it was.
@@ -395,10 +409,10 @@ impl<'a> Session<'a> {
 
 /// Which frame a picture is of, and why it has not more samples.
 #[derive(Clone, Copy)]
-struct Of<'a> {
-    number: FrameNumber,
-    identity: &'a Identity,
-    stopped_by: Option<StoppedBy>,
+pub(super) struct Of<'a> {
+    pub number: FrameNumber,
+    pub identity: &'a Identity,
+    pub stopped_by: Option<StoppedBy>,
 }
 
 /// A frame that is drawn.
