@@ -63,5 +63,8 @@ pub mod movie;
 
 pub mod study;
 
+#[cfg(feature = "capi")]
+pub mod capi;
+
 #[cfg(feature = "cli")]
 pub mod cli;
