@@ -84,6 +84,20 @@ fn c_has_the_pixels_of_rust_and_its_errors_have_words() {
     assert_eq!(folder.leftovers(), Vec::<String>::new());
 }
 
+/// Of what C hands over nothing is read that is not there, and what scenes had is free in the end.
+#[test]
+fn valgrind_finds_nothing() {
+    let folder = Folder::new();
+    let Some(check) = built("tests/capi/check.c", &folder) else { return };
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        return println!("there is no valgrind: nothing is tested");
+    }
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args(["--error-exitcode=9", "--leak-check=full"]);
+    valgrind.args(["--show-leak-kinds=definite", "--errors-for-leak-kinds=definite"]);
+    succeeded(valgrind.arg(check).arg(SCENE).arg(folder.path("")));
+}
+
 #[test]
 fn the_example_in_c_draws_a_surface_that_moves() {
     let folder = Folder::new();

@@ -154,9 +154,8 @@ pub unsafe extern "C" fn floe_size(scene: *const Scene, width: *mut u32, height:
     unsafe {
         on(scene, |scene| {
             let [columns, rows] = scene.resolution();
-            *place(width, "width")? = columns;
-            *place(height, "height")? = rows;
-            Ok(())
+            put(width, columns, "width")?;
+            put(height, rows, "height")
         })
     }
 }
@@ -203,10 +202,9 @@ pub unsafe extern "C" fn floe_relative_error(
     unsafe {
         on(scene, |scene| {
             let error = scene.rendered()?.record.relative_error;
-            *place(estimate, "estimate")? = error.map_or(f64::NAN, |error| error.estimate);
-            *place(low, "low")? = error.map_or(f64::NAN, |error| error.low);
-            *place(high, "high")? = error.map_or(f64::NAN, |error| error.high);
-            Ok(())
+            put(estimate, error.map_or(f64::NAN, |error| error.estimate), "estimate")?;
+            put(low, error.map_or(f64::NAN, |error| error.low), "low")?;
+            put(high, error.map_or(f64::NAN, |error| error.high), "high")
         })
     }
 }
@@ -265,8 +263,8 @@ pub unsafe extern "C" fn floe_write(scene: *const Scene, path: *const c_char) ->
 pub unsafe extern "C" fn floe_error_message(scene: *const Scene) -> *const c_char {
     // SAFETY: the caller's promise; a null pointer is no scene.
     let scene = unsafe { scene.as_ref() };
-    let text = caught(|| scene.map_or_else(message::without_scene, Scene::message));
-    message::lend_message(text.unwrap_or_else(|reason| reason))
+    let lent = caught(|| message::lend_message(scene.map_or_else(message::without_scene, Scene::message)));
+    lent.unwrap_or(c"".as_ptr())
 }
 
 /// Frees a scene; null is nothing.
@@ -287,10 +285,10 @@ pub unsafe extern "C" fn floe_free(scene: *mut Scene) {
 unsafe fn opened(scene: *mut *mut Scene, open: impl FnOnce() -> Result<Scene, Failure>) -> Status {
     let outcome = flat(caught(|| {
         // SAFETY: the caller's promise; the pointer is checked.
-        let scene = unsafe { place(scene, "scene") }?;
-        *scene = ptr::null_mut();
-        *scene = Box::into_raw(Box::new(open()?));
-        Ok(())
+        unsafe { put(scene, ptr::null_mut(), "scene") }?;
+        let made = Box::into_raw(Box::new(open()?));
+        // SAFETY: as before.
+        unsafe { put(scene, made, "scene") }
     }));
     concluded(outcome, |message| message::keep_without_scene(&message))
 }
@@ -315,7 +313,8 @@ fn concluded(outcome: Result<(), Failure>, keep: impl FnOnce(String)) -> Status 
     match outcome {
         Ok(()) => Status::Ok,
         Err(Failure { status, message }) => {
-            keep(message);
+            // A thread that is ending keeps no texts.
+            let _ = caught(|| keep(message));
             status
         }
     }
@@ -365,11 +364,12 @@ unsafe fn tuples<'a, T, const N: usize>(
     Ok(unsafe { slice::from_raw_parts(first.cast(), count) })
 }
 
-/// A place of the caller.
-unsafe fn place<'a, T>(place: *mut T, name: &str) -> Result<&'a mut T, Failure> {
+/// Writes where the caller wants it; nothing need be there before.
+unsafe fn put<T: Copy>(place: *mut T, value: T, name: &str) -> Result<(), Failure> {
     checked(place, name)?;
     // SAFETY: it is neither null nor misaligned, and a place for a T as the caller promises.
-    Ok(unsafe { &mut *place })
+    unsafe { place.write(value) };
+    Ok(())
 }
 
 /// A text of the caller.

@@ -30,6 +30,12 @@ pub struct Scene {
     message: Mutex<String>,
 }
 
+/// Threads of C share it, and nobody checks that for them.
+const _: () = {
+    const fn is_shared<T: Send + Sync>() {}
+    is_shared::<Scene>();
+};
+
 /// What panicked with a lock leaves whole values: each is replaced in one step.
 fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)

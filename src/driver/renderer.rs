@@ -10,7 +10,8 @@
 //! the frame              positions in single precision, normals, the hierarchy: kept until the next frame is made, whose
 //!                        hierarchy begins with that of this one where triangles are the same
 //! ```
-//! So while a hierarchy is made there are two frames and no mesh; `tests/in_process_memory.rs` measures it.
+//! Of a closed mesh of 131,072 triangles the first frame takes at most 231 bytes a triangle beyond the mesh, one that is
+//! refitted 124, and 90 are kept; a copy is 32. `tests/in_process_memory.rs` measures it and checks that there are no others.
 
 use std::path::Path;
 

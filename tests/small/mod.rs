@@ -77,7 +77,7 @@ impl Folder {
 
     /// Renders into `out/frame_####.exr` of the folder.
     pub fn render(&self, options: RenderOptions) -> RenderReport {
-        self.render_watched(options, &Silent)
+        self.render_watched(options, &())
     }
 
     pub fn render_watched(&self, options: RenderOptions, observer: &dyn Observer) -> RenderReport {
@@ -86,10 +86,6 @@ impl Folder {
         render(&job, &RenderOptions { output: Some(output), ..options }, observer).unwrap()
     }
 }
-
-struct Silent;
-
-impl Observer for Silent {}
 
 /// A frame of the sequence that comes with the package.
 pub fn shipped_frame(number: u32) -> PathBuf {
