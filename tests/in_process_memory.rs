@@ -31,6 +31,10 @@ fn greatest(renderer: &mut Renderer, mesh: impl Fn() -> RawMesh) -> [usize; 2] {
     })
 }
 
+/// The most bytes a triangle that the first and the second frame may take beyond a mesh that is moved in: 231 and 124 were
+/// measured, and half of a copy (32) is allowed above.
+const MOST: [f64; 2] = [247.0, 140.0];
+
 /// From slices a mesh is copied once, and the copy is all that there is more: what is moved in is not copied at all. The
 /// copy is known to the byte; what else may differ between two runs is not an array, so a hundredth of one is allowed.
 #[test]
@@ -58,7 +62,7 @@ fn slices_are_copied_once_and_moved_meshes_never() {
     heap::begin();
     renderer.forget();
     let freed = heap::in_use();
-    for (copied, (moved, accel)) in copied.into_iter().zip(moved) {
+    for ((copied, (moved, accel)), most) in copied.into_iter().zip(moved).zip(MOST) {
         let per_triangle = |bytes: usize| bytes as f64 / triangles as f64;
         println!(
             "a triangle: {:.0} bytes moved in, {:.0} from slices, hierarchy {:.0}",
@@ -66,6 +70,7 @@ fn slices_are_copied_once_and_moved_meshes_never() {
             per_triangle(copied),
             per_triangle(accel)
         );
+        assert!(per_triangle(moved) < most, "{} bytes a triangle, at most {most}", per_triangle(moved));
         assert!(copied.abs_diff(moved + copy) < copy / 100, "{copied} for {moved} and a copy of {copy}");
     }
     println!("kept between frames: {:.0} bytes a triangle", -freed as f64 / triangles as f64);
