@@ -34,6 +34,9 @@
 
 #![doc = include_str!("references.md")]
 
+/// The vectors that meshes are made of.
+pub use glam;
+
 pub mod geometry;
 pub mod sampling;
 pub mod spectrum;
@@ -59,6 +62,9 @@ pub mod driver;
 pub mod movie;
 
 pub mod study;
+
+#[cfg(feature = "capi")]
+pub mod capi;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage uses itself and those before it.
-const STAGES: [&str; 15] = [
+const STAGES: [&str; 16] = [
     "geometry",
     "sampling",
     "spectrum",
@@ -22,6 +22,7 @@ const STAGES: [&str; 15] = [
     "driver",
     "movie",
     "study",
+    "capi",
     "cli",
 ];
 

@@ -67,6 +67,15 @@ pub enum RenderError {
         /// The scene file.
         scene: PathBuf,
     },
+    /// A mesh in memory stands for the one mesh of `[frames]`.
+    #[error(
+        "{scene}: a mesh in memory takes the place of the one that [frames] names, and there are [[meshes]]: give one mesh \
+         with labels, or render from files"
+    )]
+    MeshesInMemory {
+        /// The scene file.
+        scene: PathBuf,
+    },
     /// The scene that was written for a folder of this name is about another folder.
     #[error(
         "{scene}: its frames.path is `{frames}`, not in {folder}: it was written for another folder of the same name; \
@@ -162,6 +171,14 @@ pub enum RenderError {
     /// The run was asked to stop.
     #[error("interrupted; what is done is kept, and the same command with --resume goes on")]
     Interrupted,
+    /// A frame in memory was asked to stop.
+    #[error(
+        "frame {number}: it was stopped before it had its samples, and nothing of it is kept; render it again"
+    )]
+    Stopped {
+        /// Its number.
+        number: FrameNumber,
+    },
     /// Frames follow each other in one sequence of random numbers, and this one has no place there.
     #[error(
         "frame {number}: seed_mode = \"sequence\" takes frames with whole numbers only; \
@@ -246,6 +263,7 @@ impl RenderError {
             | Self::NothingToWatch { .. }
             | Self::SeveralMeshes { .. }
             | Self::SamplesRange { .. }
+            | Self::MeshesInMemory { .. }
             | Self::DecimalFrame { .. } => Blame::Configuration,
             Self::Frame(error) if error.is_not_found() => Blame::Missing,
             Self::Frame(
@@ -262,7 +280,7 @@ impl RenderError {
             Self::Threads { .. } | Self::Fruitless { .. } | Self::Fault { .. } | Self::Denoise(_) => {
                 Blame::Internal
             }
-            Self::Interrupted => Blame::Interrupted,
+            Self::Interrupted | Self::Stopped { .. } => Blame::Interrupted,
         }
     }
 }

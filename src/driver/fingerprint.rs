@@ -130,8 +130,22 @@ pub(super) fn hexadecimal(bytes: &[u8]) -> String {
 pub struct Identity {
     /// What the picture depends on.
     pub fingerprint: Fingerprint,
-    /// SHA-256 of the bytes of the frame's own meshes, as `sha256sum` prints it, with a space between several.
+    /// SHA-256 of the bytes of the frame's own meshes, as `sha256sum` prints it, with a space between several; of a mesh in memory
+    /// [`RawMesh::content_hash`](crate::mesh::RawMesh::content_hash).
     pub mesh_hash: String,
+}
+
+impl Identity {
+    /// Of a frame whose own meshes, and the other files that only it is made of, have these contents.
+    pub(super) fn new(
+        fingerprints: &Fingerprints,
+        number: FrameNumber,
+        meshes: &[ContentHash],
+        others: &[ContentHash],
+    ) -> Self {
+        let mesh_hash = meshes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
+        Self { fingerprint: fingerprints.of_frame(number, meshes, others), mesh_hash }
+    }
 }
 
 /// The meshes of the next frame.
@@ -201,9 +215,8 @@ impl FrameSource {
             others.push(Sha256::digest(seconds.to_le_bytes()).into());
             others.extend(files.iter().map(|next| next.as_ref().map_or(NO_FILE, |(_, bytes)| hash(bytes))));
         }
-        let mesh_hash = hashes.iter().map(|hash| hexadecimal(hash)).collect::<Vec<_>>().join(" ");
-        let fingerprint = fingerprints.of_frame(number, &hashes, &others);
-        Self { meshes, next, inputs, identity: Identity { fingerprint, mesh_hash } }
+        let identity = Identity::new(fingerprints, number, &hashes, &others);
+        Self { meshes, next, inputs, identity }
     }
 
     /// The meshes in the very bytes that were hashed, and the rest.
@@ -231,7 +244,7 @@ impl FrameSource {
     }
 }
 
-const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
+pub(super) const STANDS_STILL: &str = "nothing in it moves while the shutter is open";
 
 /// Takes the velocities of a mesh from the next frame, or tells why not: whatever is wrong with that one, its turn is
 /// still to come.

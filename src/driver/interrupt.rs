@@ -17,6 +17,11 @@ impl Interrupt {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// Takes the request to stop back: what it was for has ended.
+    pub fn withdraw(&self) {
+        self.stop.store(false, Ordering::Relaxed);
+    }
+
     /// Whether the run is to stop.
     pub fn is_requested(&self) -> bool {
         self.stop.load(Ordering::Relaxed)

@@ -328,7 +328,7 @@ fn placed_bounds(description: &SceneDescription) -> Result<(DVec3, DVec3), Rende
     Ok(bounds)
 }
 
-fn bounds_of(mesh: &RawMesh) -> (DVec3, DVec3) {
+pub(super) fn bounds_of(mesh: &RawMesh) -> (DVec3, DVec3) {
     mesh.positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), &p| (min.min(p), max.max(p)))

@@ -9,6 +9,8 @@
 //! Several machines may each draw some samples of a frame ([`samples_range`]); [`merge()`] makes of them the picture that one
 //! run writes.
 //!
+//! A [`Renderer`] draws meshes that are in memory.
+//!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
 
@@ -21,7 +23,7 @@ mod chosen;
 pub mod error;
 pub mod fingerprint;
 pub mod frame_seeds;
-mod guard;
+pub(crate) mod guard;
 mod half_tile;
 mod halves;
 pub mod interrupt;
@@ -40,6 +42,8 @@ pub mod picture;
 pub mod preview;
 pub mod ready;
 pub mod render;
+pub mod rendered;
+pub mod renderer;
 mod restart;
 mod resume;
 pub mod samples_range;
@@ -61,6 +65,8 @@ pub use ledger::{FrameRecord, Status};
 pub use merge::merge;
 pub use picture::{PictureState, read_identity};
 pub use render::{Observer, RenderOptions, RenderReport, check_pictures, render};
+pub use rendered::Rendered;
+pub use renderer::Renderer;
 pub use restart::Restart;
 pub use samples_range::SamplesRange;
 pub use stopping::{StoppedBy, Target};

@@ -97,6 +97,9 @@ pub trait Observer: Sync {
     fn watching(&self, _status: &WatchStatus) {}
 }
 
+/// Hears nothing.
+impl Observer for () {}
+
 /// What became of a job.
 #[derive(Debug)]
 pub struct RenderReport {

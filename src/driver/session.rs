@@ -3,7 +3,7 @@
 mod doubts;
 mod part;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::accumulation::Accumulation;
 use super::ahead::{Preparation, Ready, timed};
@@ -39,7 +39,8 @@ pub(super) struct Session<'a> {
     sampling: Sampling,
     seeds: FrameSeeds,
     denoiser: Option<Denoiser>,
-    ledger: Ledger,
+    /// None where frames stay in memory.
+    ledger: Option<Ledger>,
     pub report: RenderReport,
     observer: &'a dyn Observer,
 }
@@ -52,13 +53,28 @@ impl<'a> Session<'a> {
         pattern: &str,
         tasks: &[FrameTask],
     ) -> Result<Self, RenderError> {
-        let settings = options.settings(&job.world.description.render);
         let denoiser = options.wants_denoised(&job.world.description).then(Denoiser::load).transpose()?;
         // A shard may have no frame.
         let first_picture = picture(pattern, tasks.first().map_or(FrameNumber::ONE, |task| task.number));
         let ledger = Ledger::beside(&first_picture, options.shard, options.samples_range)?;
         remove_abandoned(&first_picture);
         lap::since_last();
+        Ok(Self { denoiser, ..Self::with(job, options, observer, pattern, Some(ledger)) })
+    }
+
+    /// A session whose frames stay in memory.
+    pub fn unrecorded(job: &'a Job, options: &'a RenderOptions, observer: &'a dyn Observer) -> Self {
+        Self::with(job, options, observer, "", None)
+    }
+
+    fn with(
+        job: &'a Job,
+        options: &'a RenderOptions,
+        observer: &'a dyn Observer,
+        pattern: &str,
+        ledger: Option<Ledger>,
+    ) -> Self {
+        let settings = options.settings(&job.world.description.render);
         let report = RenderReport {
             frames: Vec::new(),
             already: Vec::new(),
@@ -67,7 +83,7 @@ impl<'a> Session<'a> {
             skipped: 0,
             seconds: 0.0,
             pattern: pattern.into(),
-            ledger: ledger.path().into(),
+            ledger: ledger.as_ref().map_or_else(PathBuf::new, |ledger| ledger.path().into()),
         };
         let samples = options.samples_range.map_or(settings.samples, |range| range.end);
         let sampling = Sampling { samples, ..Sampling::new(&settings) };
@@ -75,18 +91,8 @@ impl<'a> Session<'a> {
         if let Some(text) = seeds.overlap().filter(|_| job.files.len() > 1) {
             observer.warning(&text);
         }
-        Ok(Self {
-            job,
-            options,
-            pattern: pattern.into(),
-            settings,
-            sampling,
-            seeds,
-            denoiser,
-            ledger,
-            report,
-            observer,
-        })
+        let (denoiser, pattern) = (None, pattern.into());
+        Self { job, options, pattern, settings, sampling, seeds, denoiser, ledger, report, observer }
     }
 
     /// Tells the ledger, the observer and the report what became of a frame; true when its picture is there.
@@ -99,7 +105,7 @@ impl<'a> Session<'a> {
         record.end();
         let outcome = outcome.inspect_err(|error| record.error = Some(error.to_string()));
         // What became of the picture is worth more than that the ledger could not be written.
-        let outcome = outcome.and(self.ledger.append(&record));
+        let outcome = outcome.and(self.ledger.as_ref().map_or(Ok(()), |ledger| ledger.append(&record)));
         record.error = outcome.as_ref().err().map(ToString::to_string);
         self.observer.finished(&record);
         self.report.frames.push(record);
@@ -210,7 +216,8 @@ impl<'a> Session<'a> {
         self.conclude(task.number, record, outcome)
     }
 
-    fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
+    /// What is known of a frame that is ready.
+    pub fn record(&self, task: &FrameTask, preparation: Preparation) -> FrameRecord {
         let output = picture(&self.pattern, task.number);
         let mut record = FrameRecord::failed(task.number.to_string(), task.files.first().cloned(), output);
         record.read_seconds = preparation.read_seconds;
@@ -222,7 +229,7 @@ impl<'a> Session<'a> {
     }
 
     /// What `draw` makes of a frame, with all that is to be told about it.
-    fn trace(
+    pub fn trace(
         &mut self,
         task: &FrameTask,
         assembled: &Assembled,
@@ -276,7 +283,7 @@ impl<'a> Session<'a> {
     }
 
     /// Draws a frame, or goes on with one that has a checkpoint.
-    fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Result<Drawn, RenderError> {
+    pub fn draw(&self, frame: &Frame, checkpoint: Option<&Checkpoint>) -> Result<Drawn, RenderError> {
         let mut accumulation = Accumulation::new(frame.views.opening.resolution());
         let (stopped_by, keeper) = self.go_on(&mut accumulation, frame, checkpoint)?;
         let in_halves = accumulation.in_halves();
@@ -331,9 +338,18 @@ impl<'a> Session<'a> {
         path: &Path,
         denoised: bool,
     ) -> Result<(), RenderError> {
+        let output = &self.job.world.description.output;
+        let metadata = self.metadata(camera, of, denoised);
+        // The other layers are those of the picture with its noise.
+        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
+        let png = png_path(&self.job.world.description, path);
+        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
+    }
+
+    /// What the header of a picture says.
+    pub fn metadata(&self, camera: &Camera, of: Of<'_>, denoised: bool) -> ImageMetadata {
         let world = &self.job.world;
-        let output = &world.description.output;
-        let metadata = ImageMetadata {
+        ImageMetadata {
             frame_number: of.number.integer().and_then(|n| i32::try_from(n).ok()).unwrap_or(0),
             fps: world.fps(),
             world_to_camera: camera.world_to_camera(world.origin),
@@ -343,11 +359,7 @@ impl<'a> Session<'a> {
                 .into_iter()
                 .chain(denoised.then(|| ("floe:denoised".into(), "Open Image Denoise".into())))
                 .collect(),
-        };
-        // The other layers are those of the picture with its noise.
-        let aovs: &[Aov] = if denoised { &[] } else { &output.aovs };
-        let png = png_path(&world.description, path);
-        Ok(write_frame(image, &metadata, path, png.as_deref(), aovs, output.exposure)?)
+        }
     }
 
     /// The seconds after which a frame was cut, if it was.
@@ -403,14 +415,14 @@ impl<'a> Session<'a> {
 
 /// Which frame a picture is of, and why it has not more samples.
 #[derive(Clone, Copy)]
-struct Of<'a> {
-    number: FrameNumber,
-    identity: &'a Identity,
-    stopped_by: Option<StoppedBy>,
+pub(super) struct Of<'a> {
+    pub number: FrameNumber,
+    pub identity: &'a Identity,
+    pub stopped_by: Option<StoppedBy>,
 }
 
 /// A frame that is drawn.
-struct Drawn {
+pub(super) struct Drawn {
     image: FrameImage,
     counters: Counters,
     beams: BeamRecord,

@@ -1,5 +1,5 @@
 //! What the machine offers and the language does not check: wide registers, memory that need not be cleared, large
-//! pages. All `unsafe` code of the crate is in this file.
+//! pages. All `unsafe` code that rendering runs is in this file.
 //!
 //! Traversal and random walks are written once over [`Lanes`] and compiled twice: for any machine, and for those with
 //! AVX2 and FMA, which [`with_best`] recognises at run time. Box tests are conservative however they round; all else

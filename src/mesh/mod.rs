@@ -12,8 +12,10 @@ pub mod normals;
 pub mod topology;
 
 mod bobj;
+mod check;
 mod coarse;
 mod coincident;
+mod content;
 mod corner_classes;
 pub(crate) mod disjoint;
 mod dsc;
@@ -26,6 +28,7 @@ mod ply;
 mod polygons;
 mod prepare;
 mod read;
+mod slices;
 mod stl;
 mod velocity;
 mod vtk;
@@ -39,6 +42,7 @@ pub use prepare::{MeshWarning, prepare, prepare_sheets};
 pub use read::{
     FORMATS, Format, Syntax, add_velocities, parse, read, read_bytes, read_with, velocities_beside,
 };
+pub use slices::{MeshSlices, Positions};
 pub use velocity::{VelocityName, VelocityProperty};
 pub use weld::weld;
 

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::coarse::Coarse;
 use super::coincident::{Twins, merge_coincident};
-use super::error::{Fault, MeshError, Place};
+use super::error::MeshError;
 use super::topology::topology;
 use super::{Interface, RawMesh, Region, weld};
 
@@ -146,7 +146,7 @@ fn prepare_as(
     twins: Twins,
     path: &Path,
 ) -> Result<(RawMesh, Vec<MeshWarning>), MeshError> {
-    mesh.check().map_err(|fault| fault.in_file(path))?;
+    mesh.check(path)?;
     let labelled = mesh.interfaces.is_some();
     let mut warnings = Vec::from_iter(still_the_not_finite(&mut mesh));
     warnings.extend(Coarse::of(&mesh).map(MeshWarning::Coarse));
@@ -275,33 +275,6 @@ impl RawMesh {
             self.retain_triangles(&kept);
         }
         failing
-    }
-
-    /// What the readers promise: finite positions, indices in range, one entry a triangle.
-    fn check(&self) -> Result<(), Fault> {
-        let in_range = |triangles: &[[u32; 3]], count: usize| {
-            triangles.iter().flatten().all(|&index| (index as usize) < count)
-        };
-        let triangles = self.triangles.len();
-        let normals_fit = self.normals.as_ref().is_none_or(|normals| match &normals.corners {
-            Some(corners) => corners.len() == triangles && in_range(corners, normals.values.len()),
-            None => normals.values.len() == self.positions.len(),
-        });
-        let problem = if !self.positions.iter().all(|position| position.is_finite()) {
-            "a vertex is not finite"
-        } else if !in_range(&self.triangles, self.positions.len()) {
-            "a triangle uses a vertex that does not exist"
-        } else if self.interfaces.as_ref().is_some_and(|interfaces| interfaces.len() != triangles) {
-            "there is not one pair of labels for each triangle"
-        } else if self.velocities.as_ref().is_some_and(|velocities| velocities.len() != self.positions.len())
-        {
-            "there is not one velocity for each vertex"
-        } else if !normals_fit {
-            "the normals do not fit the vertices or triangles"
-        } else {
-            return Ok(());
-        };
-        Err(Fault::invalid(Place::File, problem, "correct what made the mesh"))
     }
 }
 

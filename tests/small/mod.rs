@@ -77,7 +77,7 @@ impl Folder {
 
     /// Renders into `out/frame_####.exr` of the folder.
     pub fn render(&self, options: RenderOptions) -> RenderReport {
-        self.render_watched(options, &Silent)
+        self.render_watched(options, &())
     }
 
     pub fn render_watched(&self, options: RenderOptions, observer: &dyn Observer) -> RenderReport {
@@ -86,10 +86,6 @@ impl Folder {
         render(&job, &RenderOptions { output: Some(output), ..options }, observer).unwrap()
     }
 }
-
-struct Silent;
-
-impl Observer for Silent {}
 
 /// A frame of the sequence that comes with the package.
 pub fn shipped_frame(number: u32) -> PathBuf {
@@ -138,10 +134,18 @@ pub fn ply(mesh: &RawMesh) -> String {
     let (vertices, faces) = (mesh.positions.len(), mesh.triangles.len());
     write!(text, "element vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n")
         .unwrap();
+    if mesh.velocities.is_some() {
+        text.push_str("property float vx\nproperty float vy\nproperty float vz\n");
+    }
     write!(text, "element face {faces}\nproperty list uchar int vertex_indices\n{labels}end_header\n")
         .unwrap();
-    for p in &mesh.positions {
-        writeln!(text, "{} {} {}", p.x, p.y, p.z).unwrap();
+    for (i, p) in mesh.positions.iter().enumerate() {
+        write!(text, "{} {} {}", p.x, p.y, p.z).unwrap();
+        if let Some(velocities) = &mesh.velocities {
+            let v = velocities[i];
+            write!(text, " {} {} {}", v.x, v.y, v.z).unwrap();
+        }
+        text.push('\n');
     }
     for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
         write!(text, "3 {a} {b} {c}").unwrap();

@@ -1,6 +1,6 @@
 //! The C interface of Open Image Denoise 2, as far as one filter on the processor needs it.
 //!
-//! The only file with unsafe code but `accel`'s: functions are looked up by name in a library that is loaded at run time,
+//! Functions are looked up by name in a library that is loaded at run time,
 //! and called with pointers to pictures. Signatures are those of `oidn.h`, which all versions 2.x keep.
 #![allow(unsafe_code)]
 

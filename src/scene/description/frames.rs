@@ -7,19 +7,34 @@ use super::value::Value;
 use super::{Axis, FramesDescription, NormalsDescription, VelocityDescription};
 use crate::mesh::Region;
 
+impl Default for FramesDescription {
+    fn default() -> Self {
+        Self {
+            path: String::new(),
+            fps: 24.0,
+            scale: 1.0,
+            up: Axis::Z,
+            normals: NormalsDescription::default(),
+            velocity: VelocityDescription::default(),
+            inside: Region(1),
+        }
+    }
+}
+
 /// Reads `[frames]`; `has_meshes` says that its files are those of `[[meshes]]`.
 pub(super) fn read(value: &Value<'_>, has_meshes: bool) -> Result<FramesDescription, SceneError> {
     let table = value.table("a table [frames]")?;
     let path = path(&table, has_meshes)?;
     let number = |key, default, allowed| table.get(key).map_or(Ok(default), |v| v.number(allowed));
+    let default = FramesDescription::default();
     let frames = FramesDescription {
         path,
-        fps: number("fps", 24.0, &Allowed::POSITIVE)?,
-        scale: number("scale", 1.0, &Allowed::SCALE)?,
-        up: table.get("up").map_or(Ok(Axis::Z), |v| axis(&v))?,
-        normals: table.get("normals").map_or(Ok(NormalsDescription::default()), |v| normals(&v))?,
-        velocity: table.get("velocity").map_or(Ok(VelocityDescription::Auto), |v| velocity(&v))?,
-        inside: table.get("inside").map_or(Ok(Region(1)), |v| inside(&v))?,
+        fps: number("fps", default.fps, &Allowed::POSITIVE)?,
+        scale: number("scale", default.scale, &Allowed::SCALE)?,
+        up: table.get("up").map_or(Ok(default.up), |v| axis(&v))?,
+        normals: table.get("normals").map_or(Ok(default.normals), |v| normals(&v))?,
+        velocity: table.get("velocity").map_or(Ok(default.velocity), |v| velocity(&v))?,
+        inside: table.get("inside").map_or(Ok(default.inside), |v| inside(&v))?,
     };
     table.finish()?;
     Ok(frames)

@@ -40,6 +40,12 @@ pub fn begin() {
     GREATEST.store(0, Ordering::Relaxed);
 }
 
+/// Bytes that are in use beyond what was at [`begin`]; below zero where more has been freed.
+#[allow(dead_code)] // Each crate that has this file uses a part of it.
+pub fn in_use() -> isize {
+    IN_USE.load(Ordering::Relaxed)
+}
+
 /// Bytes that were in use at once since [`begin`], beyond what was then.
 pub fn greatest() -> usize {
     GREATEST.load(Ordering::Relaxed).cast_unsigned()
