@@ -266,6 +266,10 @@ fn frames_may_be_submitted_before_they_are_there_and_stills_have_none() {
     folder.write("it's a box/frames/readme.txt", "");
     let lines = printed(&folder, &["commands", SCENE, "--frames", "1-40"]);
     assert!(lines.lines().count() == 40 && lines.contains("--frames=1-40 "), "{lines}");
+    let early = ["commands", SCENE, "--frames", "1-2"];
+    let said = String::from_utf8(submit(&folder, &early).stderr).unwrap();
+    assert!(said.contains("# not there yet: 1,2\n"), "{said}");
+    refused(&folder, &[&early[..], &["--trial"]].concat(), 2, &["no frame is there yet", "--trial"]);
     refused(&folder, &["commands", SCENE], 66, &["no frames", "frames.path"]);
     folder.write(
         "still.toml",
@@ -286,6 +290,7 @@ fn what_no_task_could_run_is_refused() {
     );
     refused(&folder, &["commands", SCENE, "--memory", "8"], 2, &["--memory", "8G"]);
     refused(&folder, &["commands", SCENE, "--output", "shot.exr"], 2, &["shot.exr", "####"]);
+    refused(&folder, &["commands", SCENE, "--shard", "1/2"], 2, &["--shard", "--tasks"]);
     refused(&folder, &["slurm", SCENE, "--output", "a\nb_####.exr"], 2, &["line break"]);
     refused(&folder, &["commands", SCENE, "--tasks", "2", "--chunk", "2"], 2, &["--chunk"]);
     refused(&folder, &["commands", SCENE, "--frames", "1-99999999999"], 2, &["1-99999999999", "fewer"]);

@@ -11,8 +11,7 @@ use crate::study::{CostEstimate, StudyError, estimate_cost};
 /// Renders the trial and says what it tells of so many tasks.
 pub fn run(common: &Common, work: &Work, tasks: usize) -> Result<(), Refusal> {
     let options = RenderOptions { threads: common.cpus.map(usize::from), ..common.settings.options() };
-    let there: Vec<_> = work.job.tasks().iter().map(|task| task.number).collect();
-    let numbers: Vec<_> = work.numbers.iter().copied().filter(|number| there.contains(number)).collect();
+    let numbers: Vec<_> = work.numbers.iter().copied().filter(|number| work.there.contains(number)).collect();
     if numbers.is_empty() {
         return Err("no frame is there yet that a trial could render: leave --trial out".to_owned().into());
     }

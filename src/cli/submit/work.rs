@@ -25,6 +25,8 @@ pub struct Work {
     pub frames: Option<String>,
     /// Their numbers; that of a still is 1.
     pub numbers: Vec<FrameNumber>,
+    /// The numbers that are there by now.
+    pub there: BTreeSet<FrameNumber>,
     /// The program, then the scene.
     program: String,
     scene: String,
@@ -50,16 +52,16 @@ impl Work {
             Some(_) => error.to_string().into(),
             None => Refusal::from(error),
         })?;
-        let is_still = job.world.description.frames.is_none() && job.world.description.meshes.is_empty();
         let frames = match &options.frames {
             Some(frames) => Some(frames.to_string()),
-            None => (!is_still).then(|| format_numbers(&numbers)),
+            None => (!is_still(&job)).then(|| format_numbers(&numbers)),
         };
         let program = match &common.program {
             Some(program) => program.clone(),
             None => absolute(&std::env::current_exe().unwrap_or_else(|_| "floe".into()))?,
         };
-        told_missing(&job, &numbers);
+        let there = there(&job);
+        told_missing(&there, &numbers);
         let work = Self {
             name: job.name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect(),
             frames,
@@ -68,6 +70,7 @@ impl Work {
             settings: settings(&options, &absolute(Path::new(&pattern))?),
             options: render_options(common),
             numbers,
+            there,
             job,
         };
         work.check()?;
@@ -166,9 +169,17 @@ fn numbers(job: &Job, options: &RenderOptions) -> Result<Vec<FrameNumber>, Refus
     Ok(numbers)
 }
 
+fn is_still(job: &Job) -> bool {
+    job.world.description.frames.is_none() && job.world.description.meshes.is_empty()
+}
+
+fn there(job: &Job) -> BTreeSet<FrameNumber> {
+    let still = is_still(job).then_some(FrameNumber::ONE);
+    job.files.iter().map(|file| file.number).chain(still).collect()
+}
+
 /// Frames that are asked for before they are there may be meant, or a slip of the pen.
-fn told_missing(job: &Job, numbers: &[FrameNumber]) {
-    let there: BTreeSet<FrameNumber> = job.tasks().iter().map(|task| task.number).collect();
+fn told_missing(there: &BTreeSet<FrameNumber>, numbers: &[FrameNumber]) {
     let missing: Vec<FrameNumber> =
         numbers.iter().copied().filter(|number| !there.contains(number)).collect();
     if !missing.is_empty() {
