@@ -125,13 +125,12 @@ fn waiting(command: &str) -> String {
         "
 # Where RequeueExit of Slurm does not have {interrupted} the script puts itself into the queue again.
 again=
-trap 'again=yes; kill -s TERM \"$renderer\"' USR2   # the time is nearly up
-trap 'again=no' TERM                              # cancelled or preempted: Slurm tells the renderer too, and knows what is next
+trap 'again=yes; kill -s TERM \"$!\"' USR2   # the time is nearly up
+trap 'again=no' TERM                     # cancelled or preempted: Slurm tells the renderer too, and knows what is next
 
 {command} &
-renderer=$!
-wait \"$renderer\"; code=$?
-while kill -s 0 \"$renderer\" 2>/dev/null; do wait \"$renderer\"; code=$?; done
+wait \"$!\"; code=$?
+while kill -s 0 \"$!\" 2>/dev/null; do wait \"$!\"; code=$?; done
 
 # Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times.
 if [ \"$code\" -eq {interrupted} ] || [ \"$code\" -gt 128 ]; then again=${{again:-yes}}; fi
