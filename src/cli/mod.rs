@@ -21,6 +21,7 @@ mod signals;
 mod status;
 mod streams;
 mod study;
+mod submit;
 mod summary;
 mod watch;
 mod watching;
@@ -54,6 +55,8 @@ enum Command {
     Report(report::ReportArguments),
     /// Print what a scene holds, what of the renderer it needs, and what is left out
     Info(info::InfoArguments),
+    /// Write what puts frames into the queue of a scheduler, and say what they will cost
+    Submit(submit::SubmitArguments),
     /// Make a movie, or a sheet of small pictures, of what was rendered
     Encode(encode::EncodeArguments),
     /// Print and draw what a medium, or a sphere, scatters and absorbs
@@ -80,6 +83,7 @@ fn dispatch() -> Exit {
             Command::Status(arguments) => status::run(&arguments),
             Command::Report(arguments) => report::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
+            Command::Submit(arguments) => submit::run(&arguments),
             Command::Encode(arguments) => encode::run(&arguments),
             Command::Optics(arguments) => optics::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),

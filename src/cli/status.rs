@@ -18,6 +18,9 @@ pub struct StatusArguments {
     /// End with 75 unless every frame is there
     #[arg(long)]
     require_complete: bool,
+    /// How many frames there are to be for --require-complete, since ranges of --frames take what there is
+    #[arg(long, value_name = "N", requires = "require_complete")]
+    expect: Option<usize>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -37,7 +40,11 @@ pub fn run(arguments: &StatusArguments) -> Exit {
         }
     };
     let printed = print(&if arguments.json { as_json(&states, &pattern) } else { as_text(&states) });
-    let is_complete = states.iter().all(|(_, state)| *state == FrameState::Complete);
+    if let Some(expected) = arguments.expect.filter(|expected| *expected > states.len()) {
+        say(&format!("{} of {expected} frames are there", states.len()));
+    }
+    let is_complete = arguments.expect.is_none_or(|expected| states.len() >= expected)
+        && states.iter().all(|(_, state)| *state == FrameState::Complete);
     if arguments.require_complete && !is_complete { printed.max(Exit::Interrupted) } else { printed }
 }
 

@@ -13,6 +13,7 @@
 //!
 //! A run may be broken off at any moment. [`fingerprint`] and [`picture`] tell which pictures are there and up to date,
 //! an [`accumulation::Accumulation`] holds what is done of a frame, and [`interrupt`] says when that has to be saved.
+#![doc = include_str!("farm.md")]
 
 pub mod accumulation;
 mod ahead;

@@ -8,7 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::frames::{Candidate, in_order, in_sequence, list, list_if, parse_number};
+use super::frames::{Candidate, Kind, in_order, in_sequence, list, list_if, parse_number};
 use super::name::{is_frame_name, is_time};
 use super::pattern::NamePattern;
 use super::{FrameFile, SequenceError, glob};
@@ -16,7 +16,7 @@ use super::{FrameFile, SequenceError, glob};
 /// The meshes in those folders of a folder whose names are times.
 pub(super) fn of_times(folder: &Path) -> Result<Vec<Candidate>, SequenceError> {
     let mut candidates = Vec::new();
-    for (time, inside) in list_if(folder, Path::is_dir)? {
+    for (time, inside) in list_if(folder, Kind::Folder)? {
         if !is_time(&time) {
             continue;
         }
@@ -46,7 +46,7 @@ pub(super) fn by_pattern(base: &Path, pattern: &str) -> Result<Option<Vec<FrameF
     let Some(parts) = Parts::of(base, pattern)? else { return Ok(None) };
     let folder = base.join(&parts.above);
     let files =
-        list_if(&folder, Path::is_dir)?.into_iter().map(|(name, path)| (name, path.join(&parts.below)));
+        list_if(&folder, Kind::Folder)?.into_iter().map(|(name, path)| (name, path.join(&parts.below)));
     let files: Vec<(String, PathBuf)> = files.filter(|(_, path)| path.is_file()).collect();
     let Some(place) = parts.place else {
         let matching = files.into_iter().filter(|(name, _)| glob::matches(&parts.name, name));

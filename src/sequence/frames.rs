@@ -4,7 +4,7 @@
 //! under a glob it is the last number of the stem, as [`Name`] cuts it; a folder may also hold a folder for
 //! each time (`0.05/surface.vtp`, as OpenFOAM samples surfaces). Signs are read by patterns only.
 
-use std::fs;
+use std::fs::{self, DirEntry, FileType};
 use std::path::{Path, PathBuf};
 
 use super::name::{Name, is_frame_name, split_extension};
@@ -188,15 +188,33 @@ pub(super) fn in_order(mut frames: Vec<FrameFile>) -> Result<Vec<FrameFile>, Seq
 
 /// Names and paths of the finished files of a folder, by name.
 pub(super) fn list(folder: &Path) -> Result<Vec<(String, PathBuf)>, SequenceError> {
-    // `Path::is_file` follows links: frames are often linked in from elsewhere.
-    list_if(folder, Path::is_file)
+    list_if(folder, Kind::File)
+}
+
+/// What an entry of a folder is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    File,
+    Folder,
+}
+
+impl Kind {
+    /// Whether an entry is of this kind. Links are followed, since frames are often linked in from elsewhere; of other
+    /// entries the listing itself tells, so that a thousand machines do not ask a file server about ten thousand each.
+    fn is(self, entry: &DirEntry) -> bool {
+        let is = |kind: FileType| match self {
+            Self::File => kind.is_file(),
+            Self::Folder => kind.is_dir(),
+        };
+        match entry.file_type() {
+            Ok(kind) if !kind.is_symlink() => is(kind),
+            _ => fs::metadata(entry.path()).is_ok_and(|found| is(found.file_type())),
+        }
+    }
 }
 
 /// Names and paths of what a folder holds, by name, but for what is hidden or unfinished.
-pub(super) fn list_if(
-    folder: &Path,
-    kind: impl Fn(&Path) -> bool,
-) -> Result<Vec<(String, PathBuf)>, SequenceError> {
+pub(super) fn list_if(folder: &Path, kind: Kind) -> Result<Vec<(String, PathBuf)>, SequenceError> {
     // An empty path is the current folder.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let io = |source| SequenceError::Io { folder: folder.to_owned(), source };
@@ -205,7 +223,7 @@ pub(super) fn list_if(
         let entry = entry.map_err(io)?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let unfinished = [".tmp", ".part"].iter().any(|end| name.to_ascii_lowercase().ends_with(end));
-        if !name.starts_with('.') && !unfinished && kind(&entry.path()) {
+        if !name.starts_with('.') && !unfinished && kind.is(&entry) {
             found.push((name, entry.path()));
         }
     }

@@ -7,6 +7,8 @@
 //! A range without a step holds every number between its ends, decimal ones too. With a step it holds its
 //! first number and those at whole multiples of the step from there.
 
+use std::fmt;
+
 use super::{FrameFile, FrameNumber, SequenceError};
 
 /// A set of frame numbers.
@@ -84,6 +86,13 @@ impl FrameSelection {
     pub fn absent(&self, numbers: &[FrameNumber]) -> Vec<FrameNumber> {
         let single = self.parts.iter().filter(|part| part.first == part.last).map(|part| part.first);
         single.filter(|number| !numbers.contains(number)).collect()
+    }
+}
+
+impl fmt::Display for FrameSelection {
+    /// As it was written.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
     }
 }
 

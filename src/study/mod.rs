@@ -2,6 +2,7 @@
 //!
 //! * [`compare`] compares pictures that are there with others.
 //! * [`convergence`] measures errors against run time, by means of [`statistics`].
+//! * [`cost`] says what a sequence will cost, by a trial of a few frames.
 //! * [`temporal`] measures the errors of a sequence as an eye sees them, over several frames.
 //! * [`seed_modes`] takes these measures for each way in which frames can share their random numbers.
 //! * [`flip`](mod@flip) says how different two pictures look.
@@ -17,6 +18,7 @@
 
 pub mod compare;
 pub mod convergence;
+pub mod cost;
 pub mod distributions;
 pub mod error;
 pub mod flip;
@@ -32,6 +34,7 @@ pub mod temporal;
 pub mod z_test;
 
 pub use convergence::{ConvergenceResults, ConvergenceStudy, study_convergence};
+pub use cost::{CostEstimate, FrameCost, estimate_cost};
 pub use error::StudyError;
 pub use seed_modes::{SeedModeStudy, TemporalStudy, study_seed_modes};
 pub use temporal::{TemporalErrors, TemporalMetrics};

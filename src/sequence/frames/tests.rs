@@ -168,3 +168,16 @@ fn a_huge_number_is_an_error_that_names_the_file() {
     }
     assert!(failure(&["f_1.1234567.ply"], "").contains("up to 6 decimals"));
 }
+
+#[cfg(unix)]
+#[test]
+fn links_to_files_are_frames_and_links_to_nothing_and_folders_are_none() {
+    use std::os::unix::fs::symlink;
+    let folder = folder(&["f_1.ply", "elsewhere"]);
+    fs::create_dir(folder.path().join("f_4.ply")).unwrap();
+    for (target, link) in [("elsewhere", "f_2.ply"), ("nothing", "f_3.ply"), ("f_4.ply", "f_5.ply")] {
+        symlink(target, folder.path().join(link)).unwrap();
+    }
+    let frames = discover(folder.path(), "f_#.ply").unwrap();
+    assert_eq!(frames.iter().map(|frame| frame.number.to_string()).collect::<Vec<_>>(), ["1", "2"]);
+}
