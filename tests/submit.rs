@@ -165,9 +165,9 @@ fn a_script_that_stays_puts_itself_into_the_queue_again_when_it_was_interrupted(
         ("exit 65", "", 65, false),
         ("exit 75", "", 75, true),
         ("kill -KILL $$", "", 137, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "USR2", 75, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "TERM", 75, false),
-        ("trap 'exit 0' TERM; echo; sleep 9 & wait", "USR2", 0, false),
+        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 75, true),
+        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "TERM", 75, false),
+        ("trap 'exit 0' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 0, false),
     ] {
         pretend(&folder, "renderer", renderer);
         folder.write("script", &script);

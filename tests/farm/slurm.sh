@@ -102,7 +102,7 @@ slurmd_of n1
 slurmd_of n2
 await "two nodes" idle 2
 
-scene "$folder/a scene" 8 640
+scene "$folder/a scene" 8 960
 "$floe" render "$folder/a scene" --output "$folder/local/f_####.exr" --quiet > /dev/null
 
 step "an array: one task killed, one told to stop; Slurm puts what ends with 75 into the queue again"
@@ -146,8 +146,8 @@ scontrol reconfigure
 submit "$folder/script job"
 await "both tasks" eval "running $render 1 && running $render 2"
 sleep 0.5
-signal USR2 "${render}_1"                         # the time limit
 kill -KILL "$(renderer "$render" 2)"              # no memory left
+signal USR2 "${render}_1"                         # the time limit
 await "task 3" running "$render" 3
 sleep 0.5
 scancel "${render}_3"                             # by a user: it is not to come back
@@ -187,7 +187,7 @@ if "$floe" merge --help > /dev/null 2>&1; then
 #!/bin/sh
 #SBATCH --array=0-3 --requeue --open-mode=append --output=$folder/parts.log
 part=\$SLURM_ARRAY_TASK_ID
-exec "$floe" render "$folder/a scene" --frames 0 --output "$folder/parts/f_####.exr" --resume --samples-range=\$((160 * part))..\$((160 * part + 160))
+exec "$floe" render "$folder/a scene" --frames 0 --output "$folder/parts/f_####.exr" --resume --samples-range=\$((240 * part))..\$((240 * part + 240))
 END
     parts=$(sbatch --parsable "$folder/parts.sbatch")
     merge=$(sbatch --parsable --dependency="afterany:$parts" --output="$folder/merge.log" \

@@ -130,7 +130,10 @@ trap 'again=no' TERM                     # cancelled or preempted: Slurm tells t
 
 {command} &
 wait \"$!\"; code=$?
-while kill -s 0 \"$!\" 2>/dev/null; do wait \"$!\"; code=$?; done
+# A signal ends a wait, which then says no more than that; of what has ended before there is nothing to wait for (127).
+for signal in USR2 TERM; do
+    if [ \"$code\" -gt 128 ]; then wait \"$!\"; next=$?; if [ \"$next\" -ne 127 ]; then code=$next; fi; fi
+done
 
 # Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times.
 if [ \"$code\" -eq {interrupted} ] || [ \"$code\" -gt 128 ]; then again=${{again:-yes}}; fi
