@@ -25,7 +25,8 @@
 use glam::{Vec3, Vec3A};
 
 use super::flight::Clearing;
-use super::path::{Branch, Fate, LONG_WALK, Sample};
+use super::path::{Branch, Fate, Sample};
+use super::roulette::LONG_WALK;
 use crate::geometry::Frame;
 use crate::geometry::machine::{Eight, Lanes as Wide, WithLanes, with_best};
 use crate::geometry::wide::{minus_ln_of_rest, sin_cos_of_turn};

@@ -1,6 +1,32 @@
-//! Chances of random numbers that are multiples of 2^-24, as all are here.
+//! Russian roulette.
+//!
+//! It acts on the throughput without the factors (n_a / n_b)^2 of the boundaries crossed, relative to the branch's share at
+//! the splits, so that a path which loses nothing is never ended by it. Chances are those of random numbers that are
+//! multiples of 2^-24, as all are here.
 
-use super::path::Branch;
+use super::path::{Branch, Fate};
+
+/// From this meeting with a surface on, counted since the last particle, a path survives with [`LATE_SURVIVAL`],
+/// whatever its throughput.
+const LATE_ROULETTE: u32 = 1024;
+/// Probability of going on at each meeting beyond [`LATE_ROULETTE`].
+const LATE_SURVIVAL: f32 = 0.98;
+/// Paths of a greater throughput, in the sense of the head, are not ended: one that left a diffuse wall would otherwise be
+/// light or nothing. Turbid water under a sky takes 0.6 to 0.8 of the time to equal error that 1 takes, and 0.1 is worse.
+pub(super) const UNTOUCHED: f32 = 0.25;
+/// The same where particles show a glow around the sun: few of the paths that lead there bring most of its light, and what
+/// survives roulette brings more. In the scene of `tests/bench/hero` this leaves 0.89 of the variance in 1.06 of the time, and
+/// 0.6 of the fireflies.
+pub(super) const UNTOUCHED_IN_GLOW: f32 = 0.12;
+/// From this interaction n on a path survives with 1 - 1 / n, so that of those which have come so far a share of
+/// `LONG_WALK / n` is left after n.
+///
+/// A walk that loses nothing leaves a half space after more than n steps with a chance like 1 / sqrt(n), and a slab after
+/// as many as its optical depth in the mean. So the roulette hardly touches bodies of less than a thousand mean free
+/// paths, and the mean length of walks without any way out is bounded.
+pub(super) const LONG_WALK: u32 = 65_536;
+/// No path goes on beyond this many interactions.
+pub(super) const LONGEST_WALK: u32 = 1 << 24;
 
 /// A probability as random numbers have it, which are multiples of 2^-24: those below it are rounded up.
 ///
@@ -31,6 +57,69 @@ impl Branch {
     #[inline]
     pub(super) fn weight(&self) -> f32 {
         self.throughput.max_element() / self.index_factor
+    }
+
+    /// Counts an interaction with a surface and plays Russian roulette with `u`.
+    pub(super) fn interacted(&mut self, u: f32) -> Fate {
+        self.bounces += 1;
+        self.goes_on(u)
+    }
+
+    /// Counts an interaction and plays Russian roulette with `u`.
+    #[inline]
+    pub(super) fn goes_on(&mut self, u: f32) -> Fate {
+        self.interactions += 1;
+        let is_early = self.bounces < LATE_ROULETTE && self.interactions < LONG_WALK;
+        if is_early && self.throughput.max_element() > self.untouched * (self.index_factor * self.share) {
+            return Fate::GoesOn;
+        }
+        let kept = self.throughput.max_element() / (self.index_factor * self.share);
+        let late = self.late_survival();
+        // Not `min`, which would make 1 of a throughput that is not a number, or of a branch without any share.
+        let survival = at_random(if kept >= self.untouched { late } else { kept / self.untouched * late });
+        if survival >= 1.0 {
+            return Fate::GoesOn;
+        }
+        if u < survival {
+            self.throughput /= survival;
+            Fate::GoesOn
+        } else {
+            Fate::Ends
+        }
+    }
+
+    /// Russian roulette for a path far outside; one that ends has no throughput.
+    ///
+    /// A walk without losses in a medium without end comes back from r times a body's size with a chance like 1 / r, after
+    /// like r^2 steps. Those that go on with 1 / r of the chance weigh r times as much, so that what comes back varies little.
+    #[inline]
+    pub(super) fn wander_off(&mut self, survival: f32) {
+        if survival < 1.0 {
+            let u = self.stream.next4()[0];
+            self.keep(survival, u);
+        }
+    }
+
+    /// Leaves no throughput, or that of all whose `u` is not below the probability.
+    pub(super) fn keep(&mut self, survival: f32, u: f32) {
+        let survival = at_random(survival);
+        self.throughput *= if u < survival { survival.recip() } else { 0.0 };
+    }
+
+    /// False where the path has to be cut.
+    #[inline]
+    pub(super) fn is_below_the_longest(&self) -> bool {
+        self.interactions < LONGEST_WALK
+    }
+
+    /// Probability of going on for paths that lose nothing.
+    #[inline]
+    fn late_survival(&self) -> f32 {
+        let mut survival = if self.bounces >= LATE_ROULETTE { LATE_SURVIVAL } else { 1.0 };
+        if self.interactions >= LONG_WALK {
+            survival *= 1.0 - 1.0 / self.interactions as f32;
+        }
+        survival
     }
 }
 

@@ -198,7 +198,8 @@ impl Sample<'_> {
         branch.arrival = Arrival { specular_from_eye: false, looked };
         branch.leave(hit, wi);
         let fate = branch.interacted(u[3]);
-        branch.of_mixture(fate, if glow.is_some() { lobe.pdf_w(wi) / own } else { 1.0 })
+        let own_share = lobe.pdf_w(wi) / own;
+        self.of_mixture(branch, fate, glow.as_ref(), own_share)
     }
 
     /// Adds the light of photons at a diffuse surface where the path asks for them; tells how the directions of final

