@@ -1,7 +1,7 @@
 //! SIGTERM and SIGINT save the frame and end the run; a second one ends it at once. SIGUSR1 saves the frame.
 
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::iterator::Signals;
@@ -14,16 +14,25 @@ use crate::driver::Interrupt;
 /// nothing to save.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
+/// What comes so soon after the first is the same request: `timeout`, and shells that pass on what they get, signal the
+/// process and its group.
+const ECHO: Duration = Duration::from_millis(100);
+
 /// Turns signals into requests to a run from now on.
 pub fn obey(interrupt: &Interrupt) {
     let interrupt = interrupt.clone();
     match Signals::new([SIGTERM, SIGINT, SIGUSR1]) {
         Ok(mut signals) => drop(thread::spawn(move || {
+            let mut first: Option<Instant> = None;
             for signal in signals.forever() {
-                match signal {
-                    SIGUSR1 => interrupt.request_save(),
-                    _ if interrupt.is_requested() => end(),
-                    _ => stop(&interrupt),
+                match (signal, first) {
+                    (SIGUSR1, _) => interrupt.request_save(),
+                    (_, Some(first)) if first.elapsed() >= ECHO => end(),
+                    (_, Some(_)) => {}
+                    (_, None) => {
+                        first = Some(Instant::now());
+                        stop(&interrupt);
+                    }
                 }
             }
         })),
