@@ -246,7 +246,9 @@ fn templates_count_as_open_job_description_does() {
     for line in [
         "extensions: [TASK_CHUNKING]",
         "    default: \"-3--1,1-5:2\"",
+        "    default: 6",
         "    default: 3",
+        "            - \"--expect={{Param.FrameCount}}\"",
         "            - \"--frames={{Task.Param.Frame}}\"",
         "        - name: amount.worker.vcpu",
         "            mode: NOTIFY_THEN_TERMINATE",
@@ -293,6 +295,13 @@ fn what_no_task_could_run_is_refused() {
     refused(&folder, &["commands", SCENE, "--shard", "1/2"], 2, &["--shard", "--tasks"]);
     refused(&folder, &["slurm", SCENE, "--output", "a\nb_####.exr"], 2, &["line break"]);
     refused(&folder, &["commands", SCENE, "--tasks", "2", "--chunk", "2"], 2, &["--chunk"]);
+    for (scheduler, given) in
+        [("commands", "--shard=1/2"), ("slurm", "--shard=1/2"), ("openjd", "--progress=json")]
+    {
+        refused(&folder, &[scheduler, SCENE, "--", given], 2, &[given, "leave it out"]);
+    }
+    refused(&folder, &["commands", SCENE, "--time", "1h"], 2, &["--time", "scheduler"]);
+    refused(&folder, &["slurm", SCENE, "--time", "2m"], 2, &["--time", "at least 3m"]);
     refused(&folder, &["commands", SCENE, "--frames", "1-99999999999"], 2, &["1-99999999999", "fewer"]);
 }
 

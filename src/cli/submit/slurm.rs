@@ -40,6 +40,9 @@ enum Requeue {
     Script,
 }
 
+/// The signal comes 60 s before the end, or up to 60 s earlier; a task has to get on before.
+const LEAST_TIME: Duration = Duration::from_secs(180);
+
 const RENDER: &str = "render.sbatch";
 const CHECK: &str = "check.sbatch";
 const SUBMIT: &str = "submit.sh";
@@ -49,6 +52,7 @@ pub fn papers(arguments: &SlurmArguments, work: &Work) -> Result<Papers, Refusal
     let common = &arguments.common;
     let tasks = common.tasks(work.numbers.len(), site.most_tasks)?;
     check_options(arguments)?;
+    common.check_given(&["--shard"])?;
     let by_slurm = site.requeues(Exit::Interrupted as u8);
     let requeue = arguments.requeue_by.unwrap_or(if by_slurm { Requeue::Slurm } else { Requeue::Script });
     let files = vec![
@@ -71,14 +75,21 @@ pub fn papers(arguments: &SlurmArguments, work: &Work) -> Result<Papers, Refusal
     Ok(Papers { tasks, files, once_printed, once_written })
 }
 
-/// Lines of a script cannot quote what ends them.
+/// Lines of a script cannot quote what ends them, and a task needs time before it is told to stop.
 fn check_options(arguments: &SlurmArguments) -> Result<(), Refusal> {
     let words = arguments.sbatch.iter().chain(&arguments.partition);
     let broken = words.clone().find(|word| word.contains(char::is_control));
-    match broken {
-        Some(word) => Err(format!("{word:?} has a line break in it: give one option at a time").into()),
-        None => Ok(()),
+    if let Some(word) = broken {
+        return Err(format!("{word:?} has a line break in it: give one option at a time").into());
     }
+    if arguments.common.time.is_some_and(|time| time < LEAST_TIME) {
+        let least = LEAST_TIME.as_secs() / 60;
+        return Err(format!(
+            "--time: Slurm asks a task to stop one or two minutes before its end, so it would do nothing: give at least {least}m"
+        )
+        .into());
+    }
+    Ok(())
 }
 
 /// `#SBATCH` lines that both jobs have.
