@@ -145,9 +145,8 @@ scontrol reconfigure
 ! grep -q '^exec ' "$folder/script job/render.sbatch"
 submit "$folder/script job"
 await "both tasks" eval "running $render 1 && running $render 2"
-sleep 0.5
-signal USR2 "${render}_1"                         # the time limit
 kill -KILL "$(renderer "$render" 2)"              # no memory left
+signal USR2 "${render}_1"                         # the time limit
 await "task 3" running "$render" 3
 sleep 0.5
 scancel "${render}_3"                             # by a user: it is not to come back
