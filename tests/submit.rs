@@ -160,14 +160,17 @@ fn a_script_that_stays_puts_itself_into_the_queue_again_when_it_was_interrupted(
     let program = folder.path("bin/renderer").to_str().unwrap().to_owned();
     let script = printed(&folder, &["slurm", SCENE, "--requeue-by", "script", "--program", &program]);
     let asked = folder.path("asked");
-    for (renderer, signal, code, again) in [
-        ("exit 0", "", 0, false),
-        ("exit 65", "", 65, false),
-        ("exit 75", "", 75, true),
-        ("kill -KILL $$", "", 137, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "USR2", 75, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "TERM", 75, false),
-        ("trap 'exit 0' TERM; echo; sleep 9 & wait", "USR2", 0, false),
+    for (renderer, signal, code, again, restarts) in [
+        ("exit 0", "", 0, false, "0"),
+        ("exit 65", "", 65, false, "0"),
+        ("exit 75", "", 75, true, "0"),
+        ("kill -KILL $$", "", 137, true, "0"),
+        ("kill -ILL $$", "", 132, true, "9"),
+        ("kill -ILL $$", "", 132, false, "10"),
+        ("exit 75", "", 75, true, "10"),
+        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "USR2", 75, true, "0"),
+        ("trap 'exit 75' TERM; echo; sleep 9 & wait", "TERM", 75, false, "0"),
+        ("trap 'exit 0' TERM; echo; sleep 9 & wait", "USR2", 0, false, "0"),
     ] {
         pretend(&folder, "renderer", renderer);
         folder.write("script", &script);
@@ -186,11 +189,12 @@ fn a_script_that_stays_puts_itself_into_the_queue_again_when_it_was_interrupted(
             .env("ASKED", &asked)
             .env("SLURM_JOB_ID", "7")
             .env("SLURM_ARRAY_TASK_ID", "1")
+            .env("SLURM_RESTART_COUNT", restarts)
             .output()
             .unwrap();
-        assert_eq!(output.status.code(), Some(code), "{renderer} {signal}: {output:?}");
+        assert_eq!(output.status.code(), Some(code), "{renderer} {signal} {restarts}: {output:?}");
         let wanted = if again { "requeue 7\n" } else { "" };
-        assert_eq!(std::fs::read_to_string(&asked).unwrap(), wanted, "{renderer} {signal}");
+        assert_eq!(std::fs::read_to_string(&asked).unwrap(), wanted, "{renderer} {signal} {restarts}");
     }
 }
 

@@ -43,6 +43,9 @@ enum Requeue {
 /// The signal comes 60 s before the end, or up to 60 s earlier; a task has to get on before.
 const LEAST_TIME: Duration = Duration::from_secs(180);
 
+/// Restarts after which a script that stays does not ask for another one when its renderer was killed.
+const MOST_KILLS: u32 = 10;
+
 const RENDER: &str = "render.sbatch";
 const CHECK: &str = "check.sbatch";
 const SUBMIT: &str = "submit.sh";
@@ -143,8 +146,10 @@ trap 'again=no' TERM                     # cancelled or preempted: Slurm tells t
 wait \"$!\"; code=$?
 while kill -s 0 \"$!\" 2>/dev/null; do wait \"$!\"; code=$?; done
 
-# Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times.
-if [ \"$code\" -eq {interrupted} ] || [ \"$code\" -gt 128 ]; then again=${{again:-yes}}; fi
+# Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times,
+# but not where it is killed before it can count, by a processor that lacks its instructions perhaps.
+if [ \"$code\" -eq {interrupted} ]; then again=${{again:-yes}}; fi
+if [ \"$code\" -gt 128 ] && [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {MOST_KILLS} ]; then again=${{again:-yes}}; fi
 if [ \"$again\" = yes ] && [ \"$code\" -ne 0 ]; then scontrol requeue \"$SLURM_JOB_ID\"; fi
 exit \"$code\"
 "
