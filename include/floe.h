@@ -89,6 +89,7 @@ FloeStatus floe_set_mesh_float(FloeScene *scene,
                                size_t triangle_count);
 
 // Renders the mesh as the frame of this number, which tells the place of a camera that moves, and the random numbers.
+// Nothing is denoised.
 //
 // # Safety
 // The scene is open, and not freed before the call is over.

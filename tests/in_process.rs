@@ -114,6 +114,18 @@ fn a_scene_without_a_camera_frames_the_first_mesh() {
 }
 
 #[test]
+fn a_mesh_that_makes_no_frame_is_not_what_the_camera_is_on() {
+    let text = scene("[camera]\nresolution = [8, 8]\n");
+    let good = || labelled(cube(), 0, 1);
+    let mut wrong = labelled(cuboid(DVec3::splat(50.0), DVec3::splat(60.0)), 0, 1);
+    wrong.interfaces.as_mut().unwrap()[0].back = Region(9);
+    let mut tried = renderer(&text);
+    tried.render(1, wrong, &()).unwrap_err();
+    let after = tried.render(2, good(), &()).unwrap();
+    assert_eq!(after.image, renderer(&text).render(2, good(), &()).unwrap().image);
+}
+
+#[test]
 fn what_a_scene_may_leave_out_and_what_it_may_not_have() {
     let water = labelled(cube(), 0, 1);
     let with_frames = renderer(&scene("")).render(1, water.clone(), &()).unwrap();

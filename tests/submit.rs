@@ -160,14 +160,17 @@ fn a_script_that_stays_puts_itself_into_the_queue_again_when_it_was_interrupted(
     let program = folder.path("bin/renderer").to_str().unwrap().to_owned();
     let script = printed(&folder, &["slurm", SCENE, "--requeue-by", "script", "--program", &program]);
     let asked = folder.path("asked");
-    for (renderer, signal, code, again) in [
-        ("exit 0", "", 0, false),
-        ("exit 65", "", 65, false),
-        ("exit 75", "", 75, true),
-        ("kill -KILL $$", "", 137, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 75, true),
-        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "TERM", 75, false),
-        ("trap 'exit 0' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 0, false),
+    for (renderer, signal, code, again, restarts) in [
+        ("exit 0", "", 0, false, "0"),
+        ("exit 65", "", 65, false, "0"),
+        ("exit 75", "", 75, true, "0"),
+        ("kill -KILL $$", "", 137, true, "0"),
+        ("kill -ILL $$", "", 132, true, "9"),
+        ("kill -ILL $$", "", 132, false, "10"),
+        ("exit 75", "", 75, true, "10"),
+        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 75, true, "0"),
+        ("trap 'exit 75' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "TERM", 75, false, "0"),
+        ("trap 'exit 0' TERM; echo; sleep 9 > /dev/null 2>&1 & wait", "USR2", 0, false, "0"),
     ] {
         pretend(&folder, "renderer", renderer);
         folder.write("script", &script);
@@ -186,11 +189,12 @@ fn a_script_that_stays_puts_itself_into_the_queue_again_when_it_was_interrupted(
             .env("ASKED", &asked)
             .env("SLURM_JOB_ID", "7")
             .env("SLURM_ARRAY_TASK_ID", "1")
+            .env("SLURM_RESTART_COUNT", restarts)
             .output()
             .unwrap();
-        assert_eq!(output.status.code(), Some(code), "{renderer} {signal}: {output:?}");
+        assert_eq!(output.status.code(), Some(code), "{renderer} {signal} {restarts}: {output:?}");
         let wanted = if again { "requeue 7\n" } else { "" };
-        assert_eq!(std::fs::read_to_string(&asked).unwrap(), wanted, "{renderer} {signal}");
+        assert_eq!(std::fs::read_to_string(&asked).unwrap(), wanted, "{renderer} {signal} {restarts}");
     }
 }
 
@@ -246,7 +250,9 @@ fn templates_count_as_open_job_description_does() {
     for line in [
         "extensions: [TASK_CHUNKING]",
         "    default: \"-3--1,1-5:2\"",
+        "    default: 6",
         "    default: 3",
+        "            - \"--expect={{Param.FrameCount}}\"",
         "            - \"--frames={{Task.Param.Frame}}\"",
         "        - name: amount.worker.vcpu",
         "            mode: NOTIFY_THEN_TERMINATE",
@@ -293,6 +299,13 @@ fn what_no_task_could_run_is_refused() {
     refused(&folder, &["commands", SCENE, "--shard", "1/2"], 2, &["--shard", "--tasks"]);
     refused(&folder, &["slurm", SCENE, "--output", "a\nb_####.exr"], 2, &["line break"]);
     refused(&folder, &["commands", SCENE, "--tasks", "2", "--chunk", "2"], 2, &["--chunk"]);
+    for (scheduler, given) in
+        [("commands", "--shard=1/2"), ("slurm", "--shard=1/2"), ("openjd", "--progress=json")]
+    {
+        refused(&folder, &[scheduler, SCENE, "--", given], 2, &[given, "leave it out"]);
+    }
+    refused(&folder, &["commands", SCENE, "--time", "1h"], 2, &["--time", "scheduler"]);
+    refused(&folder, &["slurm", SCENE, "--time", "2m"], 2, &["--time", "at least 3m"]);
     refused(&folder, &["commands", SCENE, "--frames", "1-99999999999"], 2, &["1-99999999999", "fewer"]);
 }
 

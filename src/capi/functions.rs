@@ -120,6 +120,7 @@ pub unsafe extern "C" fn floe_set_mesh_float(
 }
 
 /// Renders the mesh as the frame of this number, which tells the place of a camera that moves, and the random numbers.
+/// Nothing is denoised.
 ///
 /// # Safety
 /// The scene is open, and not freed before the call is over.

@@ -47,7 +47,11 @@ impl Scene {
         threads: u32,
         open: impl FnOnce(RenderOptions) -> Result<Renderer, RenderError>,
     ) -> Result<Self, Failure> {
-        let threads = (threads > 0).then_some(threads as usize);
+        let threads = u16::try_from(threads).map_err(|_| {
+            let message = format!("threads is {threads}: give at most {}, or 0 for all cores", u16::MAX);
+            Failure::new(Status::BadArgument, message)
+        })?;
+        let threads = (threads > 0).then_some(threads.into());
         let interrupt = Interrupt::default();
         let options = RenderOptions { threads, interrupt: interrupt.clone(), ..RenderOptions::default() };
         let renderer = open(options)?;

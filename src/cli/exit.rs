@@ -10,7 +10,7 @@ pub(super) const HELP: &str = "\
 Exit codes: 0 all is there, 1 pictures differ, 2 usage, 65 bad input data, 66 input missing, 70 internal error, or
 restarts that bring nothing new,
 73 cannot create or 74 cannot write an output, 75 interrupted (run it again with --resume),
-78 bad scene file; the greatest of several.";
+78 bad scene file; of several 75, else the greatest.";
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -87,9 +87,7 @@ pub(super) fn ended(
     let (results, exit) = match report {
         Ok(report) => {
             let printed = print(&summary::text(&report));
-            let interrupted = if report.interrupted { Exit::Interrupted } else { Exit::Complete };
-            let failures = report.failures.iter().map(|(_, error)| Exit::from(error));
-            (summary::json(&report), failures.fold(printed.max(interrupted), Exit::max))
+            (summary::json(&report), exit_of(&report, printed))
         }
         Err(error) => {
             say(&format!("error: {error}"));
@@ -103,4 +101,43 @@ pub(super) fn ended(
     };
     progress.ended(results, exit);
     exit
+}
+
+/// What is left to do counts before what went wrong: a scheduler starts only what was interrupted again, and what went
+/// wrong is told by the run that comes to the end.
+fn exit_of(report: &RenderReport, printed: Exit) -> Exit {
+    if report.interrupted {
+        return Exit::Interrupted;
+    }
+    report.failures.iter().map(|(_, error)| Exit::from(error)).fold(printed, Exit::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use crate::sequence::FrameNumber;
+
+    #[test]
+    fn frames_that_are_left_are_not_lost_to_one_that_is_wrong() {
+        let wrong = RenderError::NotUtf8 { path: PathBuf::new() };
+        assert_eq!(Exit::from(&wrong), Exit::Configuration);
+        let report = |interrupted, failures| RenderReport {
+            frames: Vec::new(),
+            already: Vec::new(),
+            interrupted,
+            failures,
+            skipped: 1,
+            seconds: 0.0,
+            pattern: String::new(),
+            ledger: PathBuf::new(),
+        };
+        let failures = vec![(FrameNumber::ONE, wrong)];
+        assert_eq!(exit_of(&report(false, Vec::new()), Exit::CannotWrite), Exit::CannotWrite);
+        assert_eq!(exit_of(&report(true, Vec::new()), Exit::Complete), Exit::Interrupted);
+        assert_eq!(exit_of(&report(true, failures), Exit::Complete), Exit::Interrupted);
+        let failures = vec![(FrameNumber::ONE, RenderError::NotUtf8 { path: PathBuf::new() })];
+        assert_eq!(exit_of(&report(false, failures), Exit::Complete), Exit::Configuration);
+    }
 }

@@ -106,7 +106,12 @@ impl Renderer {
         observer: &dyn Observer,
     ) -> Result<Rendered, RenderError> {
         let (number, mesh) = (number.into(), mesh.into());
+        let is_first = self.job.is_none();
         let rendered = guarded(Path::new(IN_MEMORY), || self.frame(number, mesh, observer));
+        // A mesh that made no frame is none to frame by.
+        if is_first && self.latest.is_none() {
+            self.job = None;
+        }
         self.options.interrupt.withdraw();
         rendered
     }

@@ -152,9 +152,6 @@ mod tests {
     use super::*;
     use crate::driver::render;
 
-    struct Silent;
-    impl Observer for Silent {}
-
     /// A still of the sky.
     const SCENE: &str = "[sky]\nradiance = 1\n[camera]\neye = [0, -4, 0]\ntarget = [0, 0, 0]\nresolution = [4, 3]\n[render]\nsamples = 1\n";
 
@@ -169,7 +166,7 @@ mod tests {
         for (scene, picture) in [(&scene, &picture), (&other, &stale)] {
             let output = Some(picture.to_str().unwrap().to_owned());
             let options = RenderOptions { output, ..RenderOptions::default() };
-            let report = render(&Job::open(scene).unwrap(), &options, &Silent).unwrap();
+            let report = render(&Job::open(scene).unwrap(), &options, &()).unwrap();
             assert!(report.failures.is_empty());
         }
         let job = Job::open(&scene).unwrap();
@@ -177,7 +174,7 @@ mod tests {
         let pattern = picture.to_str().unwrap();
         let count = |denoise| {
             let options = RenderOptions { denoise, ..RenderOptions::default() };
-            left(&job, &fingerprints, pattern, job.tasks(), &options, &Silent).tasks.len()
+            left(&job, &fingerprints, pattern, job.tasks(), &options, &()).tasks.len()
         };
         assert_eq!((count(false), count(true)), (0, 1));
         let denoised = folder.path().join("a.denoised.exr");

@@ -17,7 +17,7 @@ use cpu_time::ProcessTime;
 use super::distributions::student_quantile;
 use super::error::StudyError;
 use crate::driver::job::Job;
-use crate::driver::{Observer, RenderError, RenderOptions, render};
+use crate::driver::{RenderError, RenderOptions, render};
 use crate::sequence::{FrameNumber, FrameSelection};
 
 /// Frames of a trial, or renderings where there are fewer frames.
@@ -93,10 +93,6 @@ impl CostEstimate {
     }
 }
 
-struct Silent;
-
-impl Observer for Silent {}
-
 /// Renders the trial into a temporary folder; `tried` hears of each frame of it.
 ///
 /// # Errors
@@ -132,7 +128,7 @@ fn cost(job: &Job, options: &RenderOptions, number: FrameNumber) -> Result<f64, 
     let only = FrameSelection::parse(&number.to_string()).map_err(RenderError::from)?;
     let options = RenderOptions { frames: (!job.files.is_empty()).then_some(only), ..options.clone() };
     let start = ProcessTime::now();
-    let report = render(job, &options, &Silent)?;
+    let report = render(job, &options, &())?;
     match report.failures.into_iter().next() {
         Some((_, error)) => Err(error.into()),
         None => Ok(start.elapsed().as_secs_f64()),

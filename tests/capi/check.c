@@ -116,6 +116,8 @@ static void openings_are_refused(const char *text) {
   says(NULL, "no/such/scene.toml");
   CHECK(floe_scene_parse(text, NULL, 1, NULL) == FLOE_STATUS_BAD_ARGUMENT);
   says(NULL, "scene is null");
+  CHECK(floe_scene_parse(text, NULL, (uint32_t)-1, &scene) == FLOE_STATUS_BAD_ARGUMENT);
+  says(NULL, "threads is 4294967295");
   CHECK(floe_scene_parse("\xff", NULL, 1, &scene) == FLOE_STATUS_BAD_ARGUMENT);
   says(NULL, "scene_text is not UTF-8");
   CHECK(floe_scene_parse("[rendr]\n", "some/folder", 1, &scene) == FLOE_STATUS_BAD_SCENE);

@@ -51,4 +51,14 @@ find "$folder/cancelled" -name '.f_*.checkpoint' | grep -q .
 "$openjd" run "$folder/cancelled job/template.yaml" --step Check --run-dependencies > "$folder/again.log"
 same local cancelled
 
+step "a frame in a chunk that is not there is missed by the check, and by nothing else"
+scene "$folder/gap" 5 4
+rm "$folder/gap/frames/frame_0002.ply"
+"$floe" submit openjd "$folder/gap" --frames 0-4 --chunk 5 --output "$folder/gaps/f_####.exr" --write "$folder/gap job" 2> /dev/null
+"$openjd" run "$folder/gap job/template.yaml" --step Render > "$folder/gap.log"
+if "$openjd" run "$folder/gap job/template.yaml" --step Check --run-dependencies > "$folder/gap.log" 2>&1; then
+    echo "FAILED: the check takes four frames for five" >&2; exit 1
+fi
+grep -q '4 of 5 frames are there' "$folder/gap.log"
+
 passed

@@ -145,7 +145,6 @@ scontrol reconfigure
 ! grep -q '^exec ' "$folder/script job/render.sbatch"
 submit "$folder/script job"
 await "both tasks" eval "running $render 1 && running $render 2"
-sleep 0.5
 kill -KILL "$(renderer "$render" 2)"              # no memory left
 signal USR2 "${render}_1"                         # the time limit
 await "task 3" running "$render" 3

@@ -16,13 +16,22 @@ const LINES: &str = "commands.txt";
 const TASK: &str = "task.sh";
 
 pub fn papers(arguments: &CommandsArguments, work: &Work) -> Result<Papers, Refusal> {
-    let tasks = arguments.common.tasks(work.numbers.len(), usize::MAX)?;
+    let common = &arguments.common;
+    let tasks = common.tasks(work.numbers.len(), usize::MAX)?;
+    common.check_given(&["--shard"])?;
+    if common.time.is_some() || common.memory.is_some() {
+        return Err(
+            "lines of a shell have no place for --time and --memory: tell the scheduler that runs them"
+                .to_owned()
+                .into(),
+        );
+    }
     let lines = (1..=tasks).map(|task| {
         let mut choice = work.all_frames();
         choice.push(format!("--shard={task}/{tasks}"));
         shell::line(work.render(&choice)) + "\n"
     });
-    let folder = arguments.common.write.as_deref().map(absolute).transpose()?;
+    let folder = common.write.as_deref().map(absolute).transpose()?;
     let path = |name: &str| match &folder {
         Some(folder) => shell::quoted(&format!("{folder}/{name}")),
         None => name.into(),

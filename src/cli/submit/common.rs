@@ -21,7 +21,7 @@ pub struct Common {
     /// Processors of a task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub cpus: Option<u16>,
-    /// How long a task may take: 30m, 4h. One that takes longer is saved and goes on in another
+    /// How long a task may take: 30m, 4h. One that takes longer is saved; Slurm puts it into the queue again
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Memory of a task: 900M, 8G
@@ -57,6 +57,15 @@ impl Common {
             ));
         }
         Ok(wanted)
+    }
+
+    /// What each task gets from here cannot stand behind `--` too: all of them would refuse it.
+    pub fn check_given(&self, given: &[&str]) -> Result<(), String> {
+        let is_given = |word: &str| given.contains(&word.split('=').next().unwrap_or_default());
+        match self.render.iter().find(|word| is_given(word)) {
+            Some(word) => Err(format!("{word} behind --: each task gets its own; leave it out")),
+            None => Ok(()),
+        }
     }
 }
 

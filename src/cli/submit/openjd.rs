@@ -34,6 +34,7 @@ const NOTICE: u32 = 30;
 pub fn papers(arguments: &OpenjdArguments, work: &Work) -> Result<Papers, Refusal> {
     let common = &arguments.common;
     let tasks = common.tasks(work.numbers.len(), usize::MAX)?;
+    common.check_given(&["--shard", "--progress"])?;
     if let Some(word) = work.render(&[]).find(|word| word.contains("{{")) {
         return Err(format!("{word}: templates take {{{{ for the start of a variable; rename it").into());
     }
@@ -72,7 +73,8 @@ struct Division {
 }
 
 fn chunks(work: &Work, frames: &str, tasks: usize) -> Division {
-    let size = work.numbers.len().div_ceil(tasks);
+    let count = work.numbers.len();
+    let size = count.div_ceil(tasks);
     Division {
         extension: true,
         job: format!(
@@ -80,6 +82,11 @@ fn chunks(work: &Work, frames: &str, tasks: usize) -> Division {
   - name: Frames
     type: STRING
     default: {frames:?}
+  - name: FrameCount
+    type: INT
+    minValue: 1
+    default: {count}
+    description: How many Frames are, so that one that never came is missed
   - name: ChunkSize
     type: INT
     minValue: 1
@@ -95,7 +102,8 @@ fn chunks(work: &Work, frames: &str, tasks: usize) -> Division {
 "
         .into(),
         choice: vec!["--frames={{Task.Param.Frame}}".into(), PROGRESS.into()],
-        all: vec!["--frames={{Param.Frames}}".into()],
+        // A chunk is a range, and ranges take what is there.
+        all: ["--frames={{Param.Frames}}", "--expect={{Param.FrameCount}}"].map(String::from).into(),
     }
 }
 

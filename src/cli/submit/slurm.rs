@@ -40,6 +40,12 @@ enum Requeue {
     Script,
 }
 
+/// The signal comes 60 s before the end, or up to 60 s earlier; a task has to get on before.
+const LEAST_TIME: Duration = Duration::from_secs(180);
+
+/// Restarts after which a script that stays does not ask for another one when its renderer was killed.
+const MOST_KILLS: u32 = 10;
+
 const RENDER: &str = "render.sbatch";
 const CHECK: &str = "check.sbatch";
 const SUBMIT: &str = "submit.sh";
@@ -49,6 +55,7 @@ pub fn papers(arguments: &SlurmArguments, work: &Work) -> Result<Papers, Refusal
     let common = &arguments.common;
     let tasks = common.tasks(work.numbers.len(), site.most_tasks)?;
     check_options(arguments)?;
+    common.check_given(&["--shard"])?;
     let by_slurm = site.requeues(Exit::Interrupted as u8);
     let requeue = arguments.requeue_by.unwrap_or(if by_slurm { Requeue::Slurm } else { Requeue::Script });
     let files = vec![
@@ -71,14 +78,21 @@ pub fn papers(arguments: &SlurmArguments, work: &Work) -> Result<Papers, Refusal
     Ok(Papers { tasks, files, once_printed, once_written })
 }
 
-/// Lines of a script cannot quote what ends them.
+/// Lines of a script cannot quote what ends them, and a task needs time before it is told to stop.
 fn check_options(arguments: &SlurmArguments) -> Result<(), Refusal> {
     let words = arguments.sbatch.iter().chain(&arguments.partition);
     let broken = words.clone().find(|word| word.contains(char::is_control));
-    match broken {
-        Some(word) => Err(format!("{word:?} has a line break in it: give one option at a time").into()),
-        None => Ok(()),
+    if let Some(word) = broken {
+        return Err(format!("{word:?} has a line break in it: give one option at a time").into());
     }
+    if arguments.common.time.is_some_and(|time| time < LEAST_TIME) {
+        let least = LEAST_TIME.as_secs() / 60;
+        return Err(format!(
+            "--time: Slurm asks a task to stop one or two minutes before its end, so it would do nothing: give at least {least}m"
+        )
+        .into());
+    }
+    Ok(())
 }
 
 /// `#SBATCH` lines that both jobs have.
@@ -135,8 +149,10 @@ for signal in USR2 TERM; do
     if [ \"$code\" -gt 128 ]; then wait \"$!\"; next=$?; if [ \"$next\" -ne 127 ]; then code=$next; fi; fi
 done
 
-# Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times.
-if [ \"$code\" -eq {interrupted} ] || [ \"$code\" -gt 128 ]; then again=${{again:-yes}}; fi
+# Above 128 it was killed, for want of memory perhaps: floe gives up (70) once that has brought nothing new several times,
+# but not where it is killed before it can count, by a processor that lacks its instructions perhaps.
+if [ \"$code\" -eq {interrupted} ]; then again=${{again:-yes}}; fi
+if [ \"$code\" -gt 128 ] && [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {MOST_KILLS} ]; then again=${{again:-yes}}; fi
 if [ \"$again\" = yes ] && [ \"$code\" -ne 0 ]; then scontrol requeue \"$SLURM_JOB_ID\"; fi
 exit \"$code\"
 "
