@@ -61,7 +61,8 @@ pub fn run(arguments: &ReportArguments) -> Exit {
     };
     if ledgers.files.is_empty() {
         say(&format!(
-            "error: there is no ledger.jsonl in {}: render first, or name the folder of the pictures",
+            "error: there is no ledger.jsonl in {}: render first, merge partials if there are any, or name the folder of the \
+             pictures",
             shown.display()
         ));
         return Exit::Missing;
