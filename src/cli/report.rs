@@ -55,7 +55,7 @@ pub fn run(arguments: &ReportArguments) -> Exit {
     let mut ledgers = match Ledgers::in_folder(&pictures.folder) {
         Ok(ledgers) => ledgers,
         Err(error) => {
-            say(&format!("error: a ledger in {}: {error}; check who may read it", shown.display()));
+            say(&format!("error: {error}; check who may read it"));
             return Exit::Missing;
         }
     };

@@ -83,7 +83,7 @@ fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
 }
 
 fn interrupted_line(report: &RenderReport) -> Option<String> {
-    report.interrupted.then(|| "interrupted: the same command with --resume goes on".into())
+    report.interrupted.then(|| "interrupted: the same command goes on (render: with --resume)".into())
 }
 
 fn failures_line(report: &RenderReport) -> Option<String> {

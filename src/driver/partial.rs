@@ -174,6 +174,10 @@ impl Wanted {
 
 const DAMAGED: &str = "is damaged or cut short: remove it, and render it again";
 
+fn unreadable(error: &std::io::Error) -> String {
+    format!("cannot be read: {error}; check who may read it, or remove it and render it again")
+}
+
 /// Writes the samples of a range.
 ///
 /// # Errors
@@ -196,7 +200,7 @@ pub(super) fn write(
 pub(super) fn read_label(path: &Path) -> Result<Label, String> {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST_LABEL).read_to_end(&mut start));
-    read.map_err(|error| format!("cannot be read: {error}"))?;
+    read.map_err(|error| unreadable(&error))?;
     Ok(label_of(&start)?.0)
 }
 
@@ -205,7 +209,7 @@ pub(super) fn read_label(path: &Path) -> Result<Label, String> {
 /// # Errors
 /// What is wrong with them, and what to do, in words.
 pub(super) fn read(path: &Path, label: &Label) -> Result<Contents, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+    let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
     let (found, contents) = decoded(&bytes)?;
     if found == *label { Ok(contents) } else { Err("was replaced meanwhile: merge again".into()) }
 }
