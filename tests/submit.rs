@@ -209,6 +209,13 @@ fn a_folder_gets_the_array_the_check_after_it_and_what_submits_both() {
     assert!(options(&check).contains(&"--no-requeue"));
     let output = format!("--output={}", absolute(&folder, "out/it's a box/frame_####.exr"));
     let scene = absolute(&folder, "it's a box/scene.toml");
+    // Frames that are cut as they are asked to be are all that is asked for.
+    printed(
+        &folder,
+        &["slurm", SCENE, "--write", "cut", "--program", &program, "--", "--time-budget", "90s"],
+    );
+    let cut = String::from_utf8(folder.read("cut/check.sbatch")).unwrap();
+    assert!(words(&folder, &cut, &[]).contains(&"--time-budget=90s".to_owned()), "{cut}");
     let report = ["report", &scene, "--frames=1-3", &output];
     let status = ["status", &scene, "--frames=1-3", "--expect=3", &output, "--require-complete"];
     assert_eq!(words(&folder, &check, &[]), [&report[..], &status].concat());
@@ -294,6 +301,10 @@ fn what_no_task_could_run_is_refused() {
         2,
         &["--sampels", "options of floe render"],
     );
+    // The check would look for other pictures.
+    refused(&folder, &["commands", SCENE, "--", "--seed", "3"], 2, &["--seed", "before the --"]);
+    refused(&folder, &["commands", SCENE, "--", "--samples-range", "0..1"], 2, &["--samples-range", "leave"]);
+    refused(&folder, &["commands", SCENE, "--", "--preview"], 2, &["--preview", "leave it out"]);
     refused(&folder, &["commands", SCENE, "--memory", "8"], 2, &["--memory", "8G"]);
     refused(&folder, &["commands", SCENE, "--output", "shot.exr"], 2, &["shot.exr", "####"]);
     refused(&folder, &["commands", SCENE, "--shard", "1/2"], 2, &["--shard", "--tasks"]);

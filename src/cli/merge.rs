@@ -38,6 +38,8 @@ pub fn run(arguments: &MergeArguments) -> Exit {
     };
     let bars = |quiet, bar| Box::new(Bars::new(quiet, bar)) as Box<dyn Reporter>;
     let progress = reporter(&arguments.progress, options.shard, bars);
+    #[cfg(unix)]
+    super::signals::obey(&options.interrupt);
     let report = Job::open(&arguments.settings.scene)
         .and_then(|job| merge(&job, &options, arguments.remove, &*progress));
     ended(&*progress, report, arguments.settings.output.is_some())

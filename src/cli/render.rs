@@ -28,7 +28,7 @@ pub struct RenderArguments {
     samples_range: Option<SamplesRange>,
     /// A quarter of the size, at most 16 samples, into the folder `preview` beside the pictures
     #[arg(long)]
-    preview: bool,
+    pub preview: bool,
     /// Write pictures without noise too, as frame_0001.denoised.exr beside each (also output.denoise of the scene)
     #[arg(long)]
     denoise: bool,
@@ -49,19 +49,25 @@ pub struct RenderArguments {
     progress: ProgressArguments,
 }
 
+impl RenderArguments {
+    /// What they ask of a run.
+    pub fn options(&self) -> RenderOptions {
+        RenderOptions {
+            threads: self.threads.map(usize::from),
+            keep_going: self.keep_going,
+            denoise: self.denoise,
+            samples_range: self.samples_range,
+            resume: self.resume,
+            time_budget: self.time_budget,
+            checkpoint_every: Some(self.checkpoint_every).filter(|every| !every.is_zero()),
+            ..self.settings.options()
+        }
+    }
+}
+
 /// Renders and says what became of it.
 pub fn run(arguments: &RenderArguments) -> Exit {
-    let options = RenderOptions {
-        threads: arguments.threads.map(usize::from),
-        keep_going: arguments.keep_going,
-        denoise: arguments.denoise,
-        samples_range: arguments.samples_range,
-        resume: arguments.resume,
-        time_budget: arguments.time_budget,
-        restart: super::environment::restart(),
-        checkpoint_every: Some(arguments.checkpoint_every).filter(|every| !every.is_zero()),
-        ..arguments.settings.options()
-    };
+    let options = RenderOptions { restart: super::environment::restart(), ..arguments.options() };
     let options = if arguments.preview { preview::options(options) } else { options };
     let bars = |quiet, bar| Box::new(Bars::new(quiet, bar)) as Box<dyn Reporter>;
     let progress = reporter(&arguments.progress, options.shard, bars);

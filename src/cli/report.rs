@@ -55,13 +55,14 @@ pub fn run(arguments: &ReportArguments) -> Exit {
     let mut ledgers = match Ledgers::in_folder(&pictures.folder) {
         Ok(ledgers) => ledgers,
         Err(error) => {
-            say(&format!("error: a ledger in {}: {error}; check who may read it", shown.display()));
+            say(&format!("error: {error}; check who may read it"));
             return Exit::Missing;
         }
     };
     if ledgers.files.is_empty() {
         say(&format!(
-            "error: there is no ledger.jsonl in {}: render first, or name the folder of the pictures",
+            "error: there is no ledger.jsonl in {}: render first, merge partials if there are any, or name the folder of the \
+             pictures",
             shown.display()
         ));
         return Exit::Missing;

@@ -1,10 +1,12 @@
 //! `floe status`
 
 use std::fmt::Write;
+use std::time::Duration;
 
 use clap::Args;
 use serde_json::json;
 
+use super::duration::time;
 use super::exit::Exit;
 use super::settings::Settings;
 use super::streams::{print, say};
@@ -21,6 +23,9 @@ pub struct StatusArguments {
     /// How many frames there are to be for --require-complete, since ranges of --frames take what there is
     #[arg(long, value_name = "N", requires = "require_complete")]
     expect: Option<usize>,
+    /// Take frames that were cut after so much light transport, or more, for complete: 30s, 5m, 1h, as in render
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    time_budget: Option<Duration>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -44,7 +49,7 @@ pub fn run(arguments: &StatusArguments) -> Exit {
         say(&format!("{} of {expected} frames are there", states.len()));
     }
     let is_complete = arguments.expect.is_none_or(|expected| states.len() >= expected)
-        && states.iter().all(|(_, state)| *state == FrameState::Complete);
+        && states.iter().all(|(_, state)| state.is_enough(arguments.time_budget));
     if arguments.require_complete && !is_complete { printed.max(Exit::Interrupted) } else { printed }
 }
 

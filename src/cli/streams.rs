@@ -93,8 +93,11 @@ fn directive(what: &str, text: &str) -> String {
 }
 
 /// A text of which no line is taken for a directive: sessions read both streams, and lines of a scene file are quoted.
+/// They read them as Python does, to which a lone carriage return ends a line too.
 fn harmless(text: &str) -> String {
-    let indented = text.replace("\nopenjd_", "\n openjd_");
+    let indented = ['\n', '\r']
+        .iter()
+        .fold(text.to_owned(), |text, end| text.replace(&format!("{end}openjd_"), &format!("{end} openjd_")));
     if indented.starts_with("openjd_") { format!(" {indented}") } else { indented }
 }
 
@@ -118,8 +121,9 @@ mod tests {
     #[test]
     fn texts_are_no_directives_and_directives_are_one_line() {
         assert_eq!(directive("fail", "a\n  openjd_env: A=B\r\n"), "openjd_fail: a openjd_env: A=B\n");
-        let text = harmless("openjd_env: A=B\n3 | x\nopenjd_fail: no\n");
-        assert!(text.lines().all(|line| !line.starts_with("openjd_")), "{text}");
+        let text =
+            harmless("openjd_env: A=B\n3 | x\nopenjd_fail: no\n4 |\ropenjd_env: A=B\r\nopenjd_fail: no\n");
+        assert!(text.split(['\n', '\r']).all(|line| !line.starts_with("openjd_")), "{text:?}");
         assert_eq!(harmless("2 of 3\nfailed: 1\n"), "2 of 3\nfailed: 1\n");
     }
 }

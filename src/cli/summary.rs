@@ -12,8 +12,7 @@ use crate::sequence::{FrameNumber, format_numbers};
 
 /// Frames, time, estimated error, rare events, what is left out, and where it all is.
 pub fn text(report: &RenderReport) -> String {
-    let is_done = |record: &&FrameRecord| matches!(record.status, Status::Complete | Status::Partial);
-    let done: Vec<&FrameRecord> = report.frames.iter().filter(is_done).collect();
+    let done = done(report);
     let lines = [
         already_line(report),
         frames_line(report, &done),
@@ -31,11 +30,15 @@ pub fn text(report: &RenderReport) -> String {
 
 /// The same for programs.
 pub fn json(report: &RenderReport) -> Value {
-    let done: Vec<&FrameRecord> = report.frames.iter().filter(|r| r.status == Status::Complete).collect();
-    let numbers: Vec<FrameNumber> = done.iter().filter_map(|r| r.frame.parse().ok()).collect();
+    let done = done(report);
+    let of = |status: Status| {
+        let those = done.iter().filter(|record| record.status == status);
+        format_numbers(&those.filter_map(|record| record.frame.parse().ok()).collect::<Vec<FrameNumber>>())
+    };
     let failed: Vec<FrameNumber> = report.failures.iter().map(|(number, _)| *number).collect();
     json!({
-        "complete": format_numbers(&numbers),
+        "complete": of(Status::Complete),
+        "partial": of(Status::Partial),
         "already": format_numbers(&report.already),
         "failed": format_numbers(&failed),
         "skipped": report.skipped,
@@ -47,6 +50,12 @@ pub fn json(report: &RenderReport) -> Value {
         "pictures": report.pattern,
         "ledger": report.ledger,
     })
+}
+
+/// The frames whose pictures, or partials, are there.
+fn done(report: &RenderReport) -> Vec<&FrameRecord> {
+    let is_done = |record: &&FrameRecord| matches!(record.status, Status::Complete | Status::Partial);
+    report.frames.iter().filter(is_done).collect()
 }
 
 fn already_line(report: &RenderReport) -> Option<String> {
@@ -74,7 +83,7 @@ fn frames_line(report: &RenderReport, done: &[&FrameRecord]) -> Option<String> {
 }
 
 fn interrupted_line(report: &RenderReport) -> Option<String> {
-    report.interrupted.then(|| "interrupted: the same command with --resume goes on".into())
+    report.interrupted.then(|| "interrupted: the same command goes on (render: with --resume)".into())
 }
 
 fn failures_line(report: &RenderReport) -> Option<String> {

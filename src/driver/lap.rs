@@ -12,10 +12,19 @@ static LAST: AtomicU64 = AtomicU64::new(0);
 
 /// CPU seconds since this was asked last, by whomever.
 pub(super) fn since_last() -> f64 {
-    let now = ProcessTime::try_now().map(|time| time.as_duration().as_nanos()).unwrap_or_default();
-    let now = u64::try_from(now).unwrap_or(u64::MAX);
+    let now = now();
     let last = LAST.fetch_max(now, Ordering::Relaxed);
     now.saturating_sub(last) as f64 * 1e-9
+}
+
+/// The same, which is still to be told.
+pub(super) fn so_far() -> f64 {
+    now().saturating_sub(LAST.load(Ordering::Relaxed)) as f64 * 1e-9
+}
+
+fn now() -> u64 {
+    let now = ProcessTime::try_now().map(|time| time.as_duration().as_nanos()).unwrap_or_default();
+    u64::try_from(now).unwrap_or(u64::MAX)
 }
 
 #[cfg(test)]

@@ -75,7 +75,8 @@ pub struct FrameRecord {
     pub render_seconds: f64,
     /// Encoding and writing.
     pub write_seconds: f64,
-    /// CPU seconds of the whole process since it last wrote a line, what makes the next frame ready included.
+    /// CPU seconds of the whole process since it last wrote a line, what makes the next frame ready included; of a merged
+    /// frame those of its parts too.
     pub cpu_seconds: Option<f64>,
     /// Threads that rendered.
     pub threads: usize,
@@ -212,7 +213,7 @@ impl FrameRecord {
 
     /// It is known now what became of the frame.
     pub(super) fn end(&mut self) {
-        self.cpu_seconds = Some(lap::since_last());
+        self.cpu_seconds = Some(self.cpu_seconds.unwrap_or_default() + lap::since_last());
         self.ended = UNIX_EPOCH.elapsed().ok().map(|time| (1000.0 * time.as_secs_f64()).round() / 1000.0);
     }
 

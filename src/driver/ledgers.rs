@@ -63,7 +63,7 @@ impl Ledgers {
     /// Reads all in a folder; none where there is no folder.
     ///
     /// # Errors
-    /// When a file is there and cannot be read.
+    /// When a file is there and cannot be read; it is named.
     pub fn in_folder(folder: &Path) -> std::io::Result<Self> {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let names = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
@@ -72,7 +72,8 @@ impl Ledgers {
         found.sort();
         let mut ledgers = Self::default();
         for (shard, file) in found {
-            let bytes = std::fs::read(&file)?;
+            let bytes = std::fs::read(&file)
+                .map_err(|error| std::io::Error::new(error.kind(), format!("{}: {error}", file.display())))?;
             ledgers.files.push(file);
             ledgers.read(shard, &bytes);
         }

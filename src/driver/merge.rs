@@ -10,7 +10,8 @@ use super::chosen::{Chosen, chosen, not_there};
 use super::error::RenderError;
 use super::fingerprint::Fingerprints;
 use super::job::Job;
-use super::parts::{among, folder_of, names_in};
+use super::partial::Wanted;
+use super::parts::{among, folder_of, names_in, remove_partials};
 use super::picture::picture_path;
 use super::render::{Observer, RenderOptions, RenderReport, check_pictures};
 use super::resume::left;
@@ -43,8 +44,17 @@ pub fn merge(
     }
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     let asked = tasks.len() + absent.len();
+    let all = tasks.clone();
     let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, options, observer));
     session.report.already = left.already;
+    if remove {
+        // A merge that was killed may have left them.
+        for task in all.iter().filter(|task| session.report.already.contains(&task.number)) {
+            if let Ok(wanted) = Wanted::read(job, &fingerprints, options, task) {
+                remove_partials(&wanted, &picture_path(&pattern, task.number));
+            }
+        }
+    }
     observer.started(left.tasks.len());
     for number in absent {
         session.absent(number, not_there(job, number));

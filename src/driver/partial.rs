@@ -1,7 +1,7 @@
 //! Some of the samples of a frame, on the disk: `frame_0007.0-64.partial` beside `frame_0007.exr`.
 //!
 //! ```text
-//! head (what kind of file, sizes of what is in it), label, tiles, counters, beams and seconds, seal
+//! head (what kind of file, sizes of what is in it), label, tiles, counters, beams and what it took, seal
 //! ```
 //!
 //! The label says which samples of which frame of which scene these are, and what has drawn them. The tiles hold the sums
@@ -9,6 +9,7 @@
 
 use std::fs::File;
 use std::io::Read;
+use std::ops::AddAssign;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ use super::accumulation::{Accumulation, TilePart};
 use super::error::RenderError;
 use super::fingerprint::{Fingerprint, Fingerprints, FrameSource, PIXELS};
 use super::job::{FrameTask, Job};
+use super::lap;
 use super::ledger::BeamRecord;
 use super::render::RenderOptions;
 use super::samples_range::SamplesRange;
@@ -32,7 +34,7 @@ const KIND: &str = "floe partial ";
 const LONGEST_LABEL: u64 = 4096;
 
 fn head() -> String {
-    format!("{KIND}1 {}\n", layout())
+    format!("{KIND}2 {}\n", layout())
 }
 
 /// Which samples of which frame there are.
@@ -63,8 +65,41 @@ pub(super) struct Contents {
     pub parts: Vec<TilePart>,
     pub counters: Counters,
     pub beams: BeamRecord,
-    /// Light transport that it took.
+    pub took: Took,
+}
+
+/// What samples took, in all runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Took {
+    /// Light transport.
     pub seconds: f64,
+    /// The same times the threads that rendered.
+    pub thread_seconds: f64,
+    /// CPU seconds of the processes.
+    pub cpu_seconds: f64,
+}
+
+impl Took {
+    /// Samples that took so long, of which this run has `rendered` the rest; of those before its CPU time is not known, but
+    /// their threads were busy.
+    pub fn of(seconds: f64, rendered: f64, threads: usize) -> Self {
+        let threads = threads as f64;
+        let cpu_seconds = lap::so_far() + threads * (seconds - rendered).max(0.0);
+        Self { seconds, thread_seconds: threads * seconds, cpu_seconds }
+    }
+
+    /// Threads that rendered, in the mean over time.
+    pub fn threads(&self) -> usize {
+        (self.thread_seconds / self.seconds).round().max(1.0) as usize
+    }
+}
+
+impl AddAssign for Took {
+    fn add_assign(&mut self, other: Self) {
+        self.seconds += other.seconds;
+        self.thread_seconds += other.thread_seconds;
+        self.cpu_seconds += other.cpu_seconds;
+    }
 }
 
 impl Wanted {
@@ -139,6 +174,10 @@ impl Wanted {
 
 const DAMAGED: &str = "is damaged or cut short: remove it, and render it again";
 
+fn unreadable(error: &std::io::Error) -> String {
+    format!("cannot be read: {error}; check who may read it, or remove it and render it again")
+}
+
 /// Writes the samples of a range.
 ///
 /// # Errors
@@ -148,10 +187,10 @@ pub(super) fn write(
     label: &Label,
     sums: &Accumulation,
     beams: BeamRecord,
-    seconds: f64,
+    took: Took,
 ) -> Result<(), FilmError> {
     let (parts, counters) = sums.parts();
-    sealed::write(path, head().as_bytes(), &(label, parts, counters, beams, seconds))
+    sealed::write(path, head().as_bytes(), &(label, parts, counters, beams, took))
 }
 
 /// Reads the label alone.
@@ -161,7 +200,7 @@ pub(super) fn write(
 pub(super) fn read_label(path: &Path) -> Result<Label, String> {
     let mut start = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST_LABEL).read_to_end(&mut start));
-    read.map_err(|error| format!("cannot be read: {error}"))?;
+    read.map_err(|error| unreadable(&error))?;
     Ok(label_of(&start)?.0)
 }
 
@@ -170,7 +209,7 @@ pub(super) fn read_label(path: &Path) -> Result<Label, String> {
 /// # Errors
 /// What is wrong with them, and what to do, in words.
 pub(super) fn read(path: &Path, label: &Label) -> Result<Contents, String> {
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+    let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
     let (found, contents) = decoded(&bytes)?;
     if found == *label { Ok(contents) } else { Err("was replaced meanwhile: merge again".into()) }
 }

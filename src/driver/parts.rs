@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::accumulation::Accumulation;
 use super::error::RenderError;
 use super::ledger::BeamRecord;
-use super::partial::{self, Label, Wanted};
+use super::partial::{self, Label, Took, Wanted};
 use super::samples_range::SamplesRange;
 
 /// The partials of a picture, by their names, in the order of their samples.
@@ -37,8 +37,8 @@ pub(super) fn folder_of(picture: &Path) -> &Path {
 pub(super) struct Merged {
     pub sums: Accumulation,
     pub beams: BeamRecord,
-    /// Light transport of all parts.
-    pub seconds: f64,
+    /// What all parts took.
+    pub took: Took,
 }
 
 /// The labels of partials that are all of a frame.
@@ -89,7 +89,7 @@ pub(super) fn merged(wanted: &Wanted, picture: &Path) -> Result<Merged, RenderEr
     let mut all = Merged {
         sums: Accumulation::of_range(wanted.resolution, 0),
         beams: BeamRecord::default(),
-        seconds: 0.0,
+        took: Took::default(),
     };
     for (path, label) in partials.iter().zip(&labels) {
         let contents = partial::read(path, label).map_err(|problem| foreign(path, problem))?;
@@ -100,9 +100,18 @@ pub(super) fn merged(wanted: &Wanted, picture: &Path) -> Result<Merged, RenderEr
         // All have built the same.
         let beam_seconds = all.beams.beam_seconds + contents.beams.beam_seconds;
         all.beams = BeamRecord { beam_seconds, ..contents.beams };
-        all.seconds += contents.seconds;
+        all.took += contents.took;
     }
     Ok(all)
+}
+
+/// Removes the partials of a frame whose picture is there; those of anything else are not ours to remove.
+pub(super) fn remove_partials(wanted: &Wanted, picture: &Path) {
+    for path in partials_beside(picture) {
+        if partial::read_label(&path).is_ok_and(|label| wanted.check(&label).is_ok()) {
+            let _ = std::fs::remove_file(path);
+        }
+    }
 }
 
 fn foreign(path: &Path, problem: String) -> RenderError {

@@ -142,7 +142,7 @@ pub fn render(
     let mut session = Session::new(job, options, observer, &pattern, &tasks)?;
     let asked = tasks.len() + absent.len();
     let note = options.restart.zip(tasks.first());
-    let note = note.map(|(restart, first)| RestartNote::of(restart, &pattern, first.number));
+    let note = note.map(|(restart, first)| RestartNote::of(restart, &options.place(&pattern, first.number)));
     let tasks = if options.resume {
         let left = pools.render.install(|| left(job, &fingerprints, &pattern, tasks, options, observer));
         session.report.already = left.already;

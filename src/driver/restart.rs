@@ -2,11 +2,11 @@
 //!
 //! A scheduler that starts a job again when it ends with 75, when its node is lost or when it took too much memory may do so
 //! for ever, and a worker that is killed says nothing. So each restart notes beside the pictures what it found,
-//! `.restart.1234.7.json` for job 1234 whose first frame is 7, and the next one compares. [`ENOUGH`] in a row that left
+//! `.restart.1234.frame_0007.json` for job 1234 whose first picture is `frame_0007.exr`, and the next one compares. [`ENOUGH`] in a row that left
 //! everything as they found it are enough. What counts is which pictures are missing and what is in their checkpoints; a run
 //! that is not a restart is never given up.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -50,10 +50,11 @@ pub(super) struct RestartNote {
 }
 
 impl RestartNote {
-    /// That of a job which is asked for some frames; one job may run the command several times, for other frames each.
-    pub fn of(restart: Restart, pattern: &str, first: FrameNumber) -> Self {
-        let name = format!(".restart.{}.{first}.json", restart.job);
-        Self { path: picture_path(pattern, first).with_file_name(name), restart }
+    /// That of a job whose first picture, or partial, is to be there; one job may run the command several times, for
+    /// other frames, samples or scenes each, none of which may judge by what another has found.
+    pub fn of(restart: Restart, first: &Path) -> Self {
+        let stem = first.file_stem().unwrap_or_default().to_string_lossy();
+        Self { path: first.with_file_name(format!(".restart.{}.{stem}.json", restart.job)), restart }
     }
 
     /// Compares the frames that are to be drawn with what the restarts before this one found, and notes them.
@@ -137,10 +138,9 @@ mod tests {
     #[test]
     fn restarts_that_find_the_same_are_counted() {
         let folder = tempfile::tempdir().unwrap();
-        let pattern = folder.path().join("####.exr");
         let restart = Restart { job: 12, count: 1 };
-        let note = RestartNote::of(restart, pattern.to_str().unwrap(), FrameNumber::ONE);
-        assert!(note.path.ends_with(".restart.12.1.json"));
+        let note = RestartNote::of(restart, &folder.path().join("a.1.exr"));
+        assert!(note.path.ends_with(".restart.12.a.1.json"));
         for (restart, unfinished, fruitless) in [
             (1, "a", 0),
             (2, "a", 1),

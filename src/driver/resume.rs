@@ -50,7 +50,7 @@ pub(super) fn left(
                 complete(job, &picture, denoise)
             }
             // What more time would be needed for is still in its checkpoint.
-            FrameState::Cut(time) if PictureState::Cut(time).is_enough(options.time_budget) => {
+            state @ FrameState::Cut(_) if state.is_enough(options.time_budget) => {
                 complete(job, &picture, denoise)
             }
             state => state,

@@ -41,6 +41,15 @@ pub enum FrameState {
 }
 
 impl FrameState {
+    /// Whether a run that gives each frame so much time has nothing to add to the picture.
+    pub fn is_enough(&self, time_budget: Option<Duration>) -> bool {
+        match self {
+            Self::Complete => true,
+            Self::Cut(spent) => PictureState::Cut(*spent).is_enough(time_budget),
+            _ => false,
+        }
+    }
+
     /// Looks at a frame. Nothing is parsed, and where there is neither picture nor checkpoint nothing is read.
     pub fn of(world: &World, fingerprints: &Fingerprints, task: &FrameTask, picture: &Path) -> Self {
         if !picture.exists() && !Checkpoint::path_beside(picture).exists() {

@@ -85,7 +85,10 @@ impl FrameSelection {
     /// The single numbers of the selection that are not in a sequence; ranges take what there is.
     pub fn absent(&self, numbers: &[FrameNumber]) -> Vec<FrameNumber> {
         let single = self.parts.iter().filter(|part| part.first == part.last).map(|part| part.first);
-        single.filter(|number| !numbers.contains(number)).collect()
+        let mut absent: Vec<FrameNumber> = single.filter(|number| !numbers.contains(number)).collect();
+        absent.sort_unstable();
+        absent.dedup();
+        absent
     }
 }
 
@@ -195,8 +198,8 @@ mod tests {
     #[test]
     fn single_numbers_are_missed_and_ranges_take_what_there_is() {
         let numbers = [1, 2, 4].map(|n| FrameNumber::from_integer(n).unwrap());
-        let absent = FrameSelection::parse("1,3,2-9,7").unwrap().absent(&numbers);
-        assert_eq!(format_numbers(&absent), "3,7");
+        let absent = FrameSelection::parse("7,1,3,2-9,7").unwrap().absent(&numbers);
+        assert_eq!(absent, [3, 7].map(FrameNumber::from), "each of them once");
     }
     use proptest::prelude::*;
 

@@ -5,13 +5,14 @@ use std::fs;
 use super::command::{boxes, floe, pictures};
 use super::numbers::Numbers;
 use super::small::Folder;
-use super::{SUN, part, sunny};
+use super::{MERGE, SUN, part, sunny};
 
-/// What the last line of the ledger says of a frame, but for times.
+/// What the last line of the ledger says of a frame, but for times, and the threads that took them.
 fn line(folder: &Folder) -> serde_json::Value {
     let mut line = folder.ledger("out/boxes/ledger.jsonl").pop().unwrap();
+    let is_of_time = |key: &str| key.ends_with("_seconds") || ["ended", "threads"].contains(&key);
     let keys: Vec<String> = line.as_object().unwrap().keys().cloned().collect();
-    keys.iter().filter(|key| key.ends_with("_seconds")).for_each(|key| line[key.as_str()] = 0.into());
+    keys.iter().filter(|key| is_of_time(key)).for_each(|key| line[key.as_str()] = 0.into());
     line
 }
 
@@ -109,4 +110,28 @@ fn partials_go_when_that_is_wanted() {
     assert_eq!(partials(&folder), 2);
     floe(&folder, &["merge", "boxes", "--remove"]).ended(0).prints(&["1 of 1 frame (1) in "]);
     assert_eq!((partials(&folder), pictures(&folder).len()), (0, 2));
+    // Those that a merge which was killed has left, but nothing of other pictures.
+    part(&folder, "1..4");
+    floe(&folder, &["render", "boxes", "--frames", "1", "--seed", "9", "--samples-range", "0..1"]).ended(0);
+    floe(&folder, &["merge", "boxes", "--remove"]).ended(0).prints(&["1 of 1 frame was there already"]);
+    assert_eq!(partials(&folder), 1);
+    assert!(folder.files().contains(&"out/boxes/frame_0001.0-1.partial".to_owned()));
+}
+
+/// Making the picture takes next to nothing of so many samples: what is told of it is what the parts took.
+#[test]
+fn the_line_of_a_merged_frame_has_the_times_of_its_parts() {
+    let folder = sunny("path", 4000);
+    let parts = ["0..1000", "1000..4000"].map(|range| {
+        let render = ["render", "boxes", "--frames", "1", "--threads", "2", "--samples-range", range];
+        floe(&folder, &render).ended(0);
+        folder.ledger(&format!("out/boxes/ledger.{}.jsonl", range.replace("..", "-"))).remove(0)
+    });
+    floe(&folder, &[&MERGE[..], &["--threads", "1"]].concat()).ended(0);
+    let merged = folder.ledger("out/boxes/ledger.jsonl").remove(0);
+    for key in ["render_seconds", "cpu_seconds"] {
+        let [one, other, all] = [&parts[0], &parts[1], &merged].map(|line| line[key].as_f64().unwrap());
+        assert!(all > 0.8 * (one + other), "{key}: {all} of {one} and {other}");
+    }
+    assert_eq!(merged["threads"], 2);
 }

@@ -89,6 +89,11 @@ fn damaged_partials_and_those_of_other_versions_are_named() {
     other["floe partial ".len()] = b'0';
     folder.write(SECOND, &other);
     refused(&folder, 65, &[SECOND, "another version of floe"]);
+    fs::remove_file(folder.path(SECOND)).unwrap();
+    fs::create_dir(folder.path(SECOND)).unwrap();
+    refused(&folder, 65, &[SECOND, "cannot be read", "remove it"]);
+    fs::remove_dir(folder.path(SECOND)).unwrap();
+    folder.write(SECOND, &other);
     // Only what is at fault is drawn again.
     let again = ["render", "boxes", "--frames", "1", "--resume", "--samples-range"];
     floe(&folder, &[&again[..], &["0..5"]].concat()).ended(0).prints(&["1 of 1 frame was there already"]);

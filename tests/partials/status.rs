@@ -22,3 +22,17 @@ fn frames_that_have_only_to_be_merged_are_told() {
     fs::remove_file(folder.path("out/boxes/frame_0001.exr")).unwrap();
     status(&[]).ended(0).prints(&["unmerged   1\n"]);
 }
+
+/// The summary of a run that draws some samples is not that of one that drew nothing.
+#[test]
+fn programs_are_told_of_partials() {
+    let folder = sunny("path", 8);
+    let render = ["render", "boxes", "--samples-range", "0..4", "--progress", "json"];
+    let outcome = floe(&folder, &render).ended(0);
+    let summary: serde_json::Value = serde_json::from_str(outcome.stderr.lines().last().unwrap()).unwrap();
+    for (key, told) in [("event", "summary"), ("complete", ""), ("partial", "1,2")] {
+        assert_eq!(summary[key], told, "{summary}");
+    }
+    assert_eq!(summary["samples"], 2 * 16 * 9 * 4);
+    assert!(summary["relative_error"].is_f64(), "{summary}");
+}

@@ -8,7 +8,7 @@ use super::command::{Outcome, command, pictures};
 use super::interrupted::lengthy;
 use super::small::Folder;
 
-const NOTE: &str = "out/boxes/.restart.77.1.json";
+const NOTE: &str = "out/boxes/.restart.77.frame_0001.json";
 
 /// The command as job 77 that was started again so often.
 fn restarted(folder: &Folder, count: u32, more: &[&str]) -> Command {
@@ -61,7 +61,7 @@ fn the_third_restart_after_two_that_brought_nothing_gives_up() {
     fruitless(&folder, 1, &resume);
     fruitless(&folder, 2, &resume);
     ended(restarted(&folder, 3, &resume)).ended(70).says(&[
-        "error: out/boxes/.restart.77.1.json",
+        "error: out/boxes/.restart.77.frame_0001.json",
         "restart 3 of job 77 finds frame 1",
         "memory",
         "--checkpoint-every 30s",
@@ -73,10 +73,10 @@ fn the_third_restart_after_two_that_brought_nothing_gives_up() {
     killed(first, &folder, "out/boxes/.frame_0001.checkpoint", "");
     let mut other = restarted(&folder, 9, &resume);
     other.env("SLURM_JOB_ID", "78");
-    killed(other, &folder, "out/boxes/.restart.78.1.json", "\"restart\":9");
+    killed(other, &folder, "out/boxes/.restart.78.frame_0001.json", "\"restart\":9");
     // One that comes to its end leaves nothing.
     std::fs::remove_file(folder.path(NOTE)).unwrap();
-    std::fs::remove_file(folder.path("out/boxes/.restart.78.1.json")).unwrap();
+    std::fs::remove_file(folder.path("out/boxes/.restart.78.frame_0001.json")).unwrap();
     ended(restarted(&folder, 4, &["--resume", "--samples", "1"])).ended(0);
     assert_eq!(folder.leftovers(), [""; 0]);
 }
@@ -109,4 +109,23 @@ fn restarts_that_begin_anew_are_told_to_resume() {
         "",
     );
     ended(restarted(&folder, 3, &[])).ended(70).says(&["frame 1", "add --resume"]);
+}
+
+/// One job may draw several parts of a frame: none of them takes what another has found for its own.
+#[test]
+fn parts_of_a_frame_are_given_up_each_for_itself() {
+    let folder = endless();
+    let parts = ["0..500000", "500000..1000000"];
+    let part = |count, range| {
+        restarted(&folder, count, &["--resume", "--checkpoint-every", "0", "--samples-range", range])
+    };
+    for count in [1, 2] {
+        for range in parts {
+            let note = format!("out/boxes/.restart.77.frame_0001.{}.json", range.replace("..", "-"));
+            killed(part(count, range), &folder, &note, &format!("\"restart\":{count}"));
+        }
+    }
+    for range in parts {
+        ended(part(3, range)).ended(70).says(&["restart 3 of job 77 finds frame 1"]);
+    }
 }

@@ -18,6 +18,10 @@ fn cut(integrator: &str, samples: u32, more: &str) {
     assert!(few >= 4 && few < u64::from(samples), "{line}");
     assert_eq!(folder.leftovers(), ["out/boxes/.frame_0001.checkpoint"]);
     assert_eq!(floe(&folder, &["status", "boxes"]).stdout, "cut        1\nmissing    2,3\n");
+    for (budget, code) in [(&[][..], 75), (&["--time-budget", "0.01"], 0), (&["--time-budget", "0.02"], 75)] {
+        let status = ["status", "boxes", "--frames", "1", "--require-complete"];
+        floe(&folder, &[&status[..], budget].concat()).ended(code).prints(&["cut        1\n"]);
+    }
     let first = pictures(&folder);
     with(&["--resume", "--time-budget", "0.01"]).prints(&["1 of 1 frame was there already (1)\n"]);
     assert!(pictures(&folder) == first);

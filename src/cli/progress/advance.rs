@@ -74,11 +74,12 @@ impl Advance {
 
     /// A frame is done, or has failed.
     pub fn finished(&mut self, record: &FrameRecord) {
-        (self.frame, self.share) = (None, 0.0);
-        // One that was broken off is still to be done.
+        self.frame = None;
+        // One that was broken off is still to be done, and as far as it has come.
         if matches!(record.status, Status::Interrupted | Status::Preview) {
             return;
         }
+        self.share = 0.0;
         self.done += 1;
         self.samples += record.samples;
         if let Some(error) = record.relative_error {
@@ -174,9 +175,11 @@ mod tests {
         assert_eq!(advance.fraction(), Some(0.25));
         advance.finished(&record(Status::Failed, 0.04));
         assert_eq!(advance.describe(), "2 of 4 frames done, error 3.54 %");
-        // What was broken off is not done.
+        // What was broken off is not done, but in part.
+        advance.frame(FrameNumber::ONE);
+        advance.tiles(5, 10);
         advance.finished(&record(Status::Interrupted, 0.0));
-        assert_eq!(advance.fraction(), Some(0.5));
+        assert_eq!((advance.fraction(), advance.done), (Some(0.625), 2));
         let event = advance.event("progress");
         assert_eq!((&event["done"], &event["samples"]), (&2.into(), &200.into()));
     }

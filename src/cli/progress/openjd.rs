@@ -120,7 +120,9 @@ impl Reporter for OpenJd {
     fn ended(&self, _: Value, exit: Exit) {
         match exit {
             Exit::Complete if !self.quiet => direct("progress", "100"),
-            Exit::Interrupted => direct("fail", "interrupted: the same command with --resume goes on"),
+            Exit::Interrupted => {
+                direct("fail", "interrupted: the same command goes on (render: with --resume)")
+            }
             _ => {}
         }
     }

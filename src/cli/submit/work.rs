@@ -7,8 +7,8 @@ use clap::Parser;
 
 use super::common::Common;
 use super::{Refusal, shell};
-use crate::cli::Arguments;
 use crate::cli::streams::say;
+use crate::cli::{Arguments, Command};
 use crate::driver::{Job, RenderError, RenderOptions, check_pictures};
 use crate::sequence::{FrameNumber, SequenceError, format_numbers};
 
@@ -34,6 +34,8 @@ pub struct Work {
     settings: Vec<String>,
     /// Options of `floe render`.
     options: Vec<String>,
+    /// With what time a frame that was cut counts as complete.
+    budget: Option<String>,
 }
 
 impl Work {
@@ -69,12 +71,14 @@ impl Work {
             scene: absolute(&job.world.description.file)?,
             settings: settings(&options, &absolute(Path::new(&pattern))?),
             options: render_options(common),
+            budget: None,
             numbers,
             there,
             job,
         };
-        work.check()?;
-        Ok(work)
+        let tasks = work.check(&options)?;
+        let budget = tasks.time_budget.map(|time| format!("--time-budget={}s", time.as_secs_f64()));
+        Ok(Self { budget, ..work })
     }
 
     /// The words of the command that renders some frames, chosen by `choice`.
@@ -88,7 +92,7 @@ impl Work {
     /// The words of the command that says whether all is there.
     pub fn status<'a>(&'a self, choice: &'a [String]) -> impl Iterator<Item = &'a str> {
         let start = [self.program.as_str(), "status", self.scene.as_str()];
-        let words = choice.iter().chain(&self.settings).map(String::as_str);
+        let words = choice.iter().chain(&self.settings).chain(&self.budget).map(String::as_str);
         start.into_iter().chain(words).chain(["--require-complete"])
     }
 
@@ -117,8 +121,9 @@ impl Work {
         if count == 1 { "1 frame".into() } else { format!("{count} frames") }
     }
 
-    /// What `floe render` would refuse is refused here, and not by a thousand machines.
-    fn check(&self) -> Result<(), Refusal> {
+    /// What `floe render` would refuse is refused here, and not by a thousand machines; so is what makes other pictures than
+    /// those that the check looks for. What is asked of the tasks.
+    fn check(&self, settings: &RenderOptions) -> Result<RenderOptions, Refusal> {
         let all = self.all_frames();
         let words: Vec<&str> = self.render(&all).collect();
         if let Some(word) = words.iter().find(|word| word.contains(char::is_control)) {
@@ -127,15 +132,28 @@ impl Work {
             );
         }
         let parsed = Arguments::try_parse_from(std::iter::once("floe").chain(words[1..].iter().copied()));
-        parsed.map(drop).map_err(|error| {
+        let parsed = parsed.map_err(|error| {
             let reason = error.to_string();
             let reason = reason.lines().next().unwrap_or_default().trim_start_matches("error: ");
             let command = shell::line(words.iter().copied());
             format!(
                 "tasks could not run `{command}`: {reason}; what follows -- has to be options of floe render"
             )
-            .into()
-        })
+        })?;
+        let Command::Render(render) = parsed.command else { return Ok(settings.clone()) };
+        let tasks = render.options();
+        let pixels = |of: &RenderOptions| (of.samples, of.target_error, of.seed);
+        if pixels(&tasks) != pixels(settings) {
+            return Err("--samples, --target-error and --seed have to be known to the check too: write them before the --"
+                .to_owned()
+                .into());
+        }
+        if tasks.samples_range.is_some() || render.preview {
+            return Err("with --samples-range or --preview no task makes a whole picture: leave it out"
+                .to_owned()
+                .into());
+        }
+        Ok(tasks)
     }
 }
 

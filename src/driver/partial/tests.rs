@@ -7,6 +7,19 @@ use crate::film::{FilmSample, PixelAccumulator};
 
 const RANGE: SamplesRange = SamplesRange { first: 2, end: 5 };
 
+const TOOK: Took = Took { seconds: 2.5, thread_seconds: 10.0, cpu_seconds: 9.0 };
+
+#[test]
+fn what_parts_took_is_what_all_of_them_took() {
+    let mut took = TOOK;
+    took += Took { seconds: 7.5, thread_seconds: 7.5, cpu_seconds: 7.0 };
+    assert_eq!(took, Took { seconds: 10.0, thread_seconds: 17.5, cpu_seconds: 16.0 });
+    assert_eq!((TOOK.threads(), took.threads(), Took::default().threads()), (4, 2, 1));
+    // What was done before a checkpoint counts.
+    let [whole, rest] = [3.0, 1.0].map(|rendered| Took::of(3.0, rendered, 8).cpu_seconds);
+    assert!(rest - whole >= 16.0, "{whole} {rest}");
+}
+
 /// Of 20 x 3 pixels, in two tiles.
 fn wanted() -> Wanted {
     Wanted { number: FrameNumber::ONE, resolution: [20, 3], samples: 8, fingerprint: Fingerprint([3; 16]) }
@@ -30,7 +43,7 @@ fn sums() -> Accumulation {
 fn written(label: &Label) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = RANGE.partial_of(&folder.path().join("a.exr"));
-    write(&path, label, &sums(), BeamRecord { beams: 7, ..BeamRecord::default() }, 2.5).unwrap();
+    write(&path, label, &sums(), BeamRecord { beams: 7, ..BeamRecord::default() }, TOOK).unwrap();
     assert_eq!(read_label(&path).as_ref(), Ok(label));
     assert!(read(&path, label).is_ok());
     assert!(
@@ -50,7 +63,7 @@ fn what_was_written_comes_back_and_adds_up() {
     let (label, contents) = decoded(&written(&wanted().label(RANGE))).unwrap();
     assert_eq!(wanted().check(&label), Ok(()));
     assert_eq!(contents.parts, sums().parts);
-    assert_eq!((contents.beams.beams, contents.seconds), (7, 2.5));
+    assert_eq!((contents.beams.beams, contents.took), (7, TOOK));
     let mut merged = Accumulation::of_range(wanted().resolution, 0);
     assert!(merged.add(&contents.parts, contents.counters, label.range));
     let pixels = merged.finish().0.pixels;

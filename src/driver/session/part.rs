@@ -7,8 +7,8 @@ use crate::driver::checkpoint::Checkpoint;
 use crate::driver::error::RenderError;
 use crate::driver::job::FrameTask;
 use crate::driver::ledger::{FrameRecord, Status};
-use crate::driver::partial::{self, Wanted};
-use crate::driver::parts::{Merged, merged, partials_beside};
+use crate::driver::partial::{self, Took, Wanted};
+use crate::driver::parts::{Merged, merged, remove_partials};
 use crate::driver::samples_range::SamplesRange;
 use crate::driver::stopping::StoppedBy;
 use crate::film::FrameImage;
@@ -39,7 +39,8 @@ impl Session<'_> {
             checkpoint.remove();
         }
         let image = traced?;
-        let write = || partial::write(&record.output, &wanted.label(range), &sums, record.beams, seconds);
+        let took = Took::of(seconds, record.render_seconds, record.threads);
+        let write = || partial::write(&record.output, &wanted.label(range), &sums, record.beams, took);
         timed(&mut record.write_seconds, || self.options.interrupt.while_writing(write))?;
         checkpoint.remove();
         Ok(image)
@@ -55,10 +56,11 @@ impl Session<'_> {
     ) -> bool {
         let mut record = self.record(task, preparation);
         let picture = record.output.clone();
+        let wanted = prepared.as_ref().map(|ready| self.wanted(task, ready)).ok();
         let outcome = prepared.and_then(|ready| self.put_together(task, ready, &mut record));
         let is_done = self.settle(task, record, Status::Complete, outcome).is_some();
-        if is_done && remove {
-            partials_beside(&picture).iter().for_each(|partial| drop(std::fs::remove_file(partial)));
+        if let Some(wanted) = wanted.filter(|_| is_done && remove) {
+            remove_partials(&wanted, &picture);
         }
         is_done
     }
@@ -70,13 +72,15 @@ impl Session<'_> {
         record: &mut FrameRecord,
     ) -> Result<FrameImage, RenderError> {
         let wanted = self.wanted(task, ready);
-        let Merged { sums, beams, seconds } = merged(&wanted, &record.output)?;
+        let Merged { sums, beams, took } = merged(&wanted, &record.output)?;
         let draw = |_: &Self| {
             let (image, counters) = sums.finish();
             Ok(Drawn { image, counters, beams, stopped_by: StoppedBy::Samples, dropped: 0 })
         };
         let image = self.trace(task, &ready.assembled, true, record, draw)?;
-        record.render_seconds = seconds;
+        record.render_seconds = took.seconds;
+        record.cpu_seconds = Some(took.cpu_seconds);
+        record.threads = took.threads();
         self.publish(task, ready, &image, record)?;
         Ok(image)
     }
