@@ -8,14 +8,16 @@ use super::streams::say;
 use crate::driver::Restart;
 
 /// The first that is set holds; the second is of the library that shares out work to threads.
-const THREADS: [&str; 4] = ["FLOE_THREADS", "RAYON_NUM_THREADS", "SLURM_CPUS_PER_TASK", "SLURM_CPUS_ON_NODE"];
+const THREADS: [&str; 4] = ["FLOE_THREADS", "RAYON_NUM_THREADS", "SLURM_CPUS_PER_TASK", OF_JOB];
+/// What all tasks of a job have on a node: Slurm may have bound this one to fewer.
+const OF_JOB: &str = "SLURM_CPUS_ON_NODE";
 
 /// Gives everything as many threads as the environment says, for which nobody says otherwise.
 ///
 /// # Errors
 /// The exit code when they cannot be started; it is said why.
 pub fn obey() -> Result<(), Exit> {
-    let (found, ignored) = threads(variable);
+    let (found, ignored) = threads(variable, cores());
     for (name, value) in ignored {
         say(&format!(
             "warning: {name}: `{value}` is no number of threads and ignored: set it to 1 or more, or unset it"
@@ -42,13 +44,25 @@ fn variable(name: &str) -> Option<String> {
 
 type Named<T> = (&'static str, T);
 
+/// Those that the affinity mask and the cgroup leave.
+fn cores() -> u16 {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    u16::try_from(cores).unwrap_or(u16::MAX)
+}
+
 /// The number of threads and the variable with it, and those before it with values that are none.
-fn threads(variable: impl Fn(&str) -> Option<String>) -> (Option<Named<u16>>, Vec<Named<String>>) {
+fn threads(
+    variable: impl Fn(&str) -> Option<String>,
+    cores: u16,
+) -> (Option<Named<u16>>, Vec<Named<String>>) {
     let mut ignored = Vec::new();
     for name in THREADS {
         let Some(value) = variable(name).filter(|value| !value.is_empty()) else { continue };
         match value.trim().parse() {
-            Ok(threads) if threads > 0 => return (Some((name, threads)), ignored),
+            Ok(threads) if threads > 0 => {
+                let threads = if name == OF_JOB { cores.min(threads) } else { threads };
+                return (Some((name, threads)), ignored);
+            }
             _ => ignored.push((name, value)),
         }
     }
@@ -62,13 +76,14 @@ mod tests {
     #[test]
     fn the_first_number_of_threads_holds() {
         let of = |set: &[(&str, &str)]| {
-            threads(|name| set.iter().find(|(n, _)| *n == name).map(|(_, value)| value.to_string()))
+            threads(|name| set.iter().find(|(n, _)| *n == name).map(|(_, value)| value.to_string()), 16)
         };
         let all = [("SLURM_CPUS_ON_NODE", "8"), ("SLURM_CPUS_PER_TASK", "4"), ("RAYON_NUM_THREADS", "3")];
         assert_eq!(of(&all).0, Some(("RAYON_NUM_THREADS", 3)));
         assert_eq!(of(&all[..2]).0, Some(("SLURM_CPUS_PER_TASK", 4)));
         assert_eq!(of(&all[..1]).0, Some(("SLURM_CPUS_ON_NODE", 8)));
         assert_eq!(of(&[("FLOE_THREADS", " 2 "), all[1]]), (Some(("FLOE_THREADS", 2)), Vec::new()));
+        assert_eq!(of(&[("SLURM_CPUS_ON_NODE", "64")]).0, Some(("SLURM_CPUS_ON_NODE", 16)));
         assert_eq!(of(&[]), (None, Vec::new()));
         for nonsense in ["0", "-1", "2.5", "many", "4(x2)", "99999"] {
             let (found, ignored) = of(&[("FLOE_THREADS", nonsense), all[0]]);

@@ -56,16 +56,19 @@ fn a_job_has_the_threads_that_it_was_given() {
         command.envs(variables.iter().copied());
         command
     };
+    // Of a job, which may have several tasks on a node, each bound to its cores.
     let node = ("SLURM_CPUS_ON_NODE", "4");
+    let cores = std::thread::available_parallelism().unwrap().get();
     for (threads, more, variables) in [
-        (4, &[][..], &[node][..]),
+        (cores.min(4), &[][..], &[node][..]),
         (3, &[], &[("SLURM_CPUS_PER_TASK", "3"), node]),
         (5, &[], &[("FLOE_THREADS", "5"), ("SLURM_CPUS_PER_TASK", "3"), node]),
         (1, &["--threads", "1"], &[("FLOE_THREADS", "5")]),
     ] {
         assert_eq!(renders_on(threads, run(more, variables)), "", "{variables:?}");
     }
-    let said = renders_on(4, run(&[], &[("FLOE_THREADS", "all"), ("SLURM_CPUS_PER_TASK", "0"), node]));
+    let said =
+        renders_on(cores.min(4), run(&[], &[("FLOE_THREADS", "all"), ("SLURM_CPUS_PER_TASK", "0"), node]));
     for words in ["warning: FLOE_THREADS: `all`", "warning: SLURM_CPUS_PER_TASK: `0`"] {
         assert!(said.contains(words), "{said}");
     }
