@@ -67,6 +67,7 @@ fn growing(frame: u32) -> RawMesh {
 }
 
 #[test]
+#[ignore = "builds the library once more, which takes a minute"]
 fn c_has_the_pixels_of_rust_and_its_errors_have_words() {
     let folder = Folder::new();
     let Some(check) = built("tests/capi/check.c", &folder) else { return };
@@ -86,6 +87,7 @@ fn c_has_the_pixels_of_rust_and_its_errors_have_words() {
 
 /// Of what C hands over nothing is read that is not there, and what scenes had is free in the end.
 #[test]
+#[ignore = "builds the library once more, which takes a minute"]
 fn valgrind_finds_nothing() {
     let folder = Folder::new();
     let Some(check) = built("tests/capi/check.c", &folder) else { return };
@@ -99,6 +101,7 @@ fn valgrind_finds_nothing() {
 }
 
 #[test]
+#[ignore = "builds the library once more, which takes a minute"]
 fn the_example_in_c_draws_a_surface_that_moves() {
     let folder = Folder::new();
     let Some(example) = built("examples/c/animated_surface.c", &folder) else { return };

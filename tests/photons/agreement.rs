@@ -160,6 +160,7 @@ fn a_sky_of_photons_and_everything_else() {
 /// Wavelengths that part, of photons and of the eye paths that meet them: through the ball light comes to the floor, and
 /// through it the floor is seen. What both were thinned for must not count twice.
 #[test]
+#[ignore = "takes half a minute"]
 fn wavelengths_that_bend_their_own_ways() {
     let folder = SceneFolder::new()
         .mesh("floor.ply", &floor())
