@@ -115,6 +115,7 @@ fn beams_add_up() {
 
 /// Photons of several suns are other photons; with a ball of glass in the water beams are not without them either.
 #[test]
+#[ignore = "takes a minute"]
 fn photons_add_up() {
     for render in [
         "integrator = \"beams\"\nphotons = { count = 20000 }\n",
