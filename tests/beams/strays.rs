@@ -119,6 +119,7 @@ fn light_that_is_mirrored_onto_a_wall() {
 /// The lamp is a polygon of 256 sides, 1e4 m away: of the disc's area it has all but 1e-4, and over the scene its direction
 /// varies by 1e-4.
 #[test]
+#[ignore = "half a minute"]
 fn a_wide_sun_as_chance_finds_it() {
     const FAR: f64 = 1e4;
     const SIDES: u32 = 256;
