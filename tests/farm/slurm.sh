@@ -140,8 +140,9 @@ await "two nodes" idle 2
 
 step "without RequeueExit the script puts itself into the queue again"
 configure ""
+scene "$folder/long scene" 4 2400                  # so that no frame ends before it is told to
 scontrol reconfigure
-"$floe" submit slurm "$folder/a scene" --frames 0-3 --output "$folder/script/f_####.exr" --cpus 1 --write "$folder/script job" 2> /dev/null
+"$floe" submit slurm "$folder/long scene" --frames 0-3 --output "$folder/script/f_####.exr" --cpus 1 --write "$folder/script job" 2> /dev/null
 ! grep -q '^exec ' "$folder/script job/render.sbatch"
 submit "$folder/script job"
 await "both tasks" eval "running $render 1 && running $render 2"
@@ -154,7 +155,7 @@ await "the check" finished "$check"
 [ "$(code "$check")" = 1:0 ]
 restarted "${render}_1"
 restarted "${render}_2"
-[ "$("$floe" status "$folder/a scene" --frames 0-3 --output "$folder/script/f_####.exr" | tr -s ' \n' ' ')" = "complete 0,1,3 partial 2 " ]
+[ "$("$floe" status "$folder/long scene" --frames 0-3 --output "$folder/script/f_####.exr" | tr -s ' \n' ' ')" = "complete 0,1,3 partial 2 " ]
 
 step "frame i is simulated, meshed and rendered by three arrays, each when the one before it has its i"
 scene "$folder/chain" 0 16
